@@ -1,0 +1,94 @@
+#ifndef MESHGROW_BACKGROUND_GRID_H
+#define MESHGROW_BACKGROUND_GRID_H
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "facet_tree.h"
+
+namespace meshgrow {
+
+struct GridOptions {
+  /// Relative tolerance t: the grid's size is at most (1 + t) times the exact one, everywhere.
+  double tolerance = 0.05;
+  /// OpenMP threads that build; 0 takes OpenMP's default. The result does not depend on it.
+  int threads = 0;
+  /// A cell with at most so many facets left may keep them and answer from them.
+  int facets_per_exact_leaf = 16;
+  /// Called with the finished fraction in [0, 1], from the calling thread only.
+  std::function<void(double)> progress;
+};
+
+/// Octree that interpolates a size field (paper, section 4; DESIGN.md, section 2).
+///
+/// The field is h(p) = min(L, min over facets of S0 + α · distance). The grid promises
+/// `size(p) ≤ (1 + t) h(p)` at every point p, by proof and not by sampling: in an interpolated cell
+/// each facet that can matter has a tangent plane, a lower bound of its convex size, that stands
+/// above the corner values divided by 1 + t at all eight corners; trilinear interpolation carries
+/// that order to the whole cell. Beside the source, where no such plane exists, a cell keeps the few
+/// facets that can rule in it and answers from them. That the grid is not much *smaller* than h is
+/// checked at 19 points of each interpolated cell unless one facet proves it.
+///
+/// Immutable after construction; every const function may be called from any thread.
+class BackgroundGrid {
+ public:
+  /// Builds in parallel. `box` (model units) is enlarged to a cube; a flat or empty one is allowed.
+  BackgroundGrid(std::shared_ptr<const FacetTree> tree, double size_limit, const Box& box,
+                 const GridOptions& options = {});
+
+  /// Size at the finite point p in model units: from the grid inside its cube, exact outside.
+  double size(const Vec3& p) const;
+
+  struct Statistics {
+    std::size_t interpolated_leaves = 0;
+    std::size_t exact_leaves = 0;
+    std::size_t blocks = 0;  ///< inner nodes, eight children each
+    int depth = 0;
+    std::size_t bytes = 0;  ///< without the tree
+    double seconds = 0.0;   ///< wall time of building
+  };
+  const Statistics& statistics() const { return statistics_; }
+
+  const FacetTree& tree() const { return *tree_; }
+  double size_limit() const { return size_limit_; }
+  Box cube() const { return Box(origin_, origin_ + Vec3::Constant(edge_)); }
+
+ private:
+  friend class GridBuilder;
+
+  using CornerValues = std::array<float, 8>;
+
+  /// Two bits of kind above 30 bits of index.
+  using NodeCode = std::uint32_t;
+  enum class NodeKind : std::uint32_t { block = 0, interpolated = 1, exact = 2, tree = 3 };
+
+  /// The nodes of one subtree; the codes index into the same part.
+  struct Nodes {
+    std::vector<std::array<NodeCode, 8>> blocks;
+    std::vector<CornerValues> corners;
+    std::vector<std::uint32_t> exact_begin;  ///< one more than exact leaves
+    std::vector<std::uint32_t> exact_facets;
+    int depth = 0;
+  };
+
+  static NodeCode code(NodeKind kind, std::size_t index);
+  static NodeKind kind(NodeCode code) { return static_cast<NodeKind>(code >> 30); }
+  static std::uint32_t index(NodeCode code) { return code & 0x3FFFFFFFu; }
+
+  double exact_leaf_size(std::uint32_t leaf, const Vec3& p) const;
+
+  std::shared_ptr<const FacetTree> tree_;
+  double size_limit_;
+  Vec3 origin_;
+  double edge_;
+  NodeCode root_ = 0;
+  Nodes nodes_;
+  Statistics statistics_;
+};
+
+}  // namespace meshgrow
+
+#endif

@@ -1,0 +1,188 @@
+#include "grid_builder.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "error.h"
+#include "parallel.h"
+
+namespace meshgrow {
+
+namespace {
+
+/// 2^-20 of the cube; a cell still undecided there asks the tree.
+constexpr int max_depth = 20;
+
+/// So many open cells are enough to keep all threads busy to the end.
+constexpr std::size_t open_cells_wanted = 512;
+
+/// Taken off the tolerance: rounding of corner values to float (6e-8) and of the tangents' direction.
+constexpr double rounding_reserve = 1e-6;
+
+using Verdict = CellClassifier::Verdict;
+
+}  // namespace
+
+GridBuilder::GridBuilder(BackgroundGrid& grid, const GridOptions& options)
+    : grid_(grid), options_(options), tolerance_(options.tolerance - rounding_reserve) {}
+
+CellClassifier GridBuilder::classifier() const {
+  return CellClassifier(*grid_.tree_, grid_.size_limit_, tolerance_,
+                        static_cast<std::size_t>(options_.facets_per_exact_leaf));
+}
+
+void GridBuilder::build() {
+  const std::vector<OpenCell> open = build_top();
+  std::vector<Nodes> parts(open.size());
+  std::vector<NodeCode> roots(open.size());
+  parallel_for(
+      open.size(), options_.threads,
+      [&](std::size_t i) {
+        CellClassifier own = classifier();
+        roots[i] = build_subtree(open[i].cell, *open[i].candidates, own, parts[i]);
+      },
+      [&](std::size_t done) {
+        if (options_.progress) {
+          options_.progress(static_cast<double>(done) / static_cast<double>(open.size()));
+        }
+      });
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    append_subtree(parts[i], roots[i], open[i]);
+    parts[i] = Nodes();
+  }
+  grid_.nodes_.exact_begin.push_back(
+      static_cast<std::uint32_t>(grid_.nodes_.exact_facets.size()));
+}
+
+std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
+  auto all = std::make_shared<Facets>(grid_.tree_->facets().size());
+  std::iota(all->begin(), all->end(), 0U);
+  OpenCell root;
+  root.cell.half_edge = 0.5 * grid_.edge_;
+  root.cell.centre = grid_.origin_ + Vec3::Constant(root.cell.half_edge);
+  root.candidates = all;
+  for (int i = 0; i < 8; ++i) {
+    root.cell.corner_values[i] =
+        grid_.tree_->size(root.cell.corner(i), grid_.size_limit_);
+  }
+
+  // Block 0 stands above the root: its first child is the root's own place.
+  Nodes& nodes = grid_.nodes_;
+  nodes.blocks.emplace_back();
+  std::vector<OpenCell> open{root};
+  while (!open.empty() && open.size() < open_cells_wanted && open.front().cell.depth < max_depth) {
+    struct Classified {
+      Verdict verdict;
+      std::shared_ptr<const Facets> facets;
+      Lattice lattice;
+    };
+    std::vector<Classified> classified(open.size());
+    parallel_for(open.size(), options_.threads, [&](std::size_t i) {
+      CellClassifier own = classifier();
+      Classified& result = classified[i];
+      result.verdict = own.classify(open[i].cell, *open[i].candidates);
+      if (result.verdict == Verdict::split) {
+        result.lattice = own.lattice(open[i].cell);
+        result.facets = std::make_shared<Facets>(own.ruling_facets());
+      } else {
+        result.facets = std::make_shared<Facets>(own.leaf_facets());
+      }
+    });
+    std::vector<OpenCell> next;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const Classified& result = classified[i];
+      if (result.verdict != Verdict::split) {
+        set_code(open[i], append_leaf(result.verdict, open[i].cell, *result.facets, nodes));
+        continue;
+      }
+      const std::size_t block = nodes.blocks.size();
+      nodes.blocks.emplace_back();
+      set_code(open[i], BackgroundGrid::code(NodeKind::block, block));
+      for (int child = 0; child < 8; ++child) {
+        next.push_back(
+            {child_cell(open[i].cell, child, result.lattice), result.facets, block, child});
+      }
+    }
+    open = std::move(next);
+  }
+  return open;
+}
+
+GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell, const Facets& candidates,
+                                                 CellClassifier& classifier, Nodes& nodes) const {
+  nodes.depth = std::max(nodes.depth, cell.depth);
+  const Verdict verdict = classifier.classify(cell, candidates);
+  if (verdict != Verdict::split) {
+    return append_leaf(verdict, cell, classifier.leaf_facets(), nodes);
+  }
+  if (cell.depth == max_depth) {
+    return BackgroundGrid::code(NodeKind::tree, 0);
+  }
+  const Lattice lattice = classifier.lattice(cell);
+  const Facets ruling = classifier.ruling_facets();
+  const std::size_t block = nodes.blocks.size();
+  nodes.blocks.emplace_back();
+  for (int child = 0; child < 8; ++child) {
+    const NodeCode code =
+        build_subtree(child_cell(cell, child, lattice), ruling, classifier, nodes);
+    nodes.blocks[block][child] = code;
+  }
+  return BackgroundGrid::code(NodeKind::block, block);
+}
+
+GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& cell,
+                                               const Facets& leaf_facets, Nodes& nodes) {
+  nodes.depth = std::max(nodes.depth, cell.depth);
+  if (verdict == Verdict::interpolate) {
+    BackgroundGrid::CornerValues values;
+    std::transform(cell.corner_values.begin(), cell.corner_values.end(), values.begin(),
+                   [](double value) { return static_cast<float>(value); });
+    nodes.corners.push_back(values);
+    return BackgroundGrid::code(NodeKind::interpolated, nodes.corners.size() - 1);
+  }
+  nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_facets.size()));
+  nodes.exact_facets.insert(nodes.exact_facets.end(), leaf_facets.begin(), leaf_facets.end());
+  return BackgroundGrid::code(NodeKind::exact, nodes.exact_begin.size() - 1);
+}
+
+void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place) {
+  Nodes& nodes = grid_.nodes_;
+  const std::size_t first_block = nodes.blocks.size();
+  const std::size_t first_corners = nodes.corners.size();
+  const std::size_t first_exact = nodes.exact_begin.size();
+  const std::size_t first_facet = nodes.exact_facets.size();
+  if (first_facet + part.exact_facets.size() > 0xFFFFFFFFu) {
+    throw Error("The background grid has too many exact cells: raise its tolerance.");
+  }
+  const auto moved = [&](NodeCode code) {
+    const std::uint32_t index = BackgroundGrid::index(code);
+    switch (BackgroundGrid::kind(code)) {
+      case NodeKind::block:
+        return BackgroundGrid::code(NodeKind::block, first_block + index);
+      case NodeKind::interpolated:
+        return BackgroundGrid::code(NodeKind::interpolated, first_corners + index);
+      case NodeKind::exact:
+        return BackgroundGrid::code(NodeKind::exact, first_exact + index);
+      default:
+        return code;
+    }
+  };
+  for (auto block : part.blocks) {
+    std::transform(block.begin(), block.end(), block.begin(), moved);
+    nodes.blocks.push_back(block);
+  }
+  nodes.corners.insert(nodes.corners.end(), part.corners.begin(), part.corners.end());
+  for (const std::uint32_t begin : part.exact_begin) {
+    nodes.exact_begin.push_back(static_cast<std::uint32_t>(first_facet + begin));
+  }
+  nodes.exact_facets.insert(nodes.exact_facets.end(), part.exact_facets.begin(),
+                            part.exact_facets.end());
+  nodes.depth = std::max(nodes.depth, part.depth);
+  set_code(place, moved(part_root));
+}
+
+void GridBuilder::set_code(const OpenCell& place, NodeCode code) {
+  grid_.nodes_.blocks[place.block][place.child] = code;
+}
+
+}  // namespace meshgrow

@@ -1,0 +1,51 @@
+#ifndef MESHGROW_GRID_BUILDER_H
+#define MESHGROW_GRID_BUILDER_H
+
+#include <memory>
+#include <vector>
+
+#include "background_grid.h"
+#include "cell_classifier.h"
+
+namespace meshgrow {
+
+/// Builds the octree of a BackgroundGrid: the topmost levels breadth-first, then the subtrees below
+/// them in parallel, joined in a fixed order. Every decision depends on its cell alone, so the result
+/// is the same to the bit for any number of threads.
+class GridBuilder {
+ public:
+  GridBuilder(BackgroundGrid& grid, const GridOptions& options);
+
+  void build();
+
+ private:
+  using Facets = std::vector<std::uint32_t>;
+  using NodeCode = BackgroundGrid::NodeCode;
+  using NodeKind = BackgroundGrid::NodeKind;
+  using Nodes = BackgroundGrid::Nodes;
+
+  /// A cell still to be classified, and the place in `blocks` that waits for its code.
+  struct OpenCell {
+    GridCell cell;
+    std::shared_ptr<const Facets> candidates;
+    std::size_t block = 0;
+    int child = 0;
+  };
+
+  CellClassifier classifier() const;
+  std::vector<OpenCell> build_top();
+  NodeCode build_subtree(const GridCell& cell, const Facets& candidates, CellClassifier& classifier,
+                         Nodes& nodes) const;
+  static NodeCode append_leaf(CellClassifier::Verdict verdict, const GridCell& cell,
+                              const Facets& leaf_facets, Nodes& nodes);
+  void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);
+  void set_code(const OpenCell& place, NodeCode code);
+
+  BackgroundGrid& grid_;
+  const GridOptions& options_;
+  double tolerance_;
+};
+
+}  // namespace meshgrow
+
+#endif

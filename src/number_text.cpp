@@ -1,0 +1,32 @@
+#include "number_text.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace meshgrow {
+
+std::string grouped_digits(std::size_t value) {
+  std::string digits = std::to_string(value);
+  for (std::size_t from_end = 3; from_end < digits.size(); from_end += 4) {
+    digits.insert(digits.size() - from_end, ",");
+  }
+  return digits;
+}
+
+std::string rounded(double value, int decimals) {
+  if (std::isnan(value)) {
+    return "-";
+  }
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(decimals) << value;
+  return text.str();
+}
+
+std::string shortest(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace meshgrow

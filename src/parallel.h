@@ -1,0 +1,55 @@
+#ifndef MESHGROW_PARALLEL_H
+#define MESHGROW_PARALLEL_H
+
+#include <omp.h>
+
+#include <cstddef>
+#include <exception>
+
+namespace meshgrow {
+
+/// Runs body(i) for i in [0, count) on `threads` OpenMP threads (0: OpenMP's default), in any order.
+/// The first exception of a body is thrown again after all threads have come to rest. `finished(n)`
+/// is called on the calling thread only, with the number of bodies done so far.
+template <typename Body, typename Finished>
+void parallel_for(std::size_t count, int threads, Body body, Finished finished) {
+  std::exception_ptr failure;
+  std::size_t done = 0;
+  const int team = threads > 0 ? threads : omp_get_max_threads();
+#pragma omp parallel for schedule(dynamic, 1) num_threads(team)
+  for (std::size_t i = 0; i < count; ++i) {
+    bool failed = false;
+#pragma omp critical(meshgrow_parallel_for)
+    failed = failure != nullptr;
+    if (failed) {
+      continue;
+    }
+    try {
+      body(i);
+    } catch (...) {
+#pragma omp critical(meshgrow_parallel_for)
+      if (!failure) {
+        failure = std::current_exception();
+      }
+      continue;
+    }
+    std::size_t so_far = 0;
+#pragma omp atomic capture
+    so_far = ++done;
+    if (omp_get_thread_num() == 0) {
+      finished(so_far);
+    }
+  }
+  if (failure) {
+    std::rethrow_exception(failure);
+  }
+}
+
+template <typename Body>
+void parallel_for(std::size_t count, int threads, Body body) {
+  parallel_for(count, threads, body, [](std::size_t) {});
+}
+
+}  // namespace meshgrow
+
+#endif

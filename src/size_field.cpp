@@ -1,0 +1,235 @@
+#include "size_field.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <sstream>
+
+#include "growth_law.h"
+#include "number_text.h"
+#include "start_sizes/fixed_start_sizes.h"
+#include "start_sizes/mesh_start_sizes.h"
+
+namespace meshgrow {
+
+namespace {
+
+std::string name_of(const SizeFunction& function, std::size_t index) {
+  std::string name = kind_name(function.kind);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name + " size function " + std::to_string(index + 1);
+}
+
+}  // namespace
+
+SizeField::SizeField(Topology topology, FieldOptions options)
+    : topology_(std::move(topology)), options_(std::move(options)) {}
+
+std::string SizeField::function_name(std::size_t function) const {
+  return name_of(functions_[function], function);
+}
+
+std::size_t SizeField::add(SizeFunction function) {
+  validate(function, name_of(function, functions_.size()), topology_);
+  functions_.push_back(std::move(function));
+  facets_.emplace_back();
+  regroup();
+  return functions_.size() - 1;
+}
+
+void SizeField::regroup() {
+  std::map<Entity, std::vector<Action>> actions_on;
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    std::vector<Entity> source_volumes;
+    for (const Entity& source : functions_[i].sources) {
+      if (source.dim == 3) {
+        source_volumes.push_back(source);
+      }
+    }
+    const std::set<Entity> inside = topology_.closure(source_volumes);
+    for (const Entity& entity : topology_.closure(functions_[i].attachments)) {
+      actions_on[entity].push_back({i, inside.count(entity) > 0});
+    }
+  }
+  std::map<std::vector<Action>, std::size_t> index_of;
+  groups_.clear();
+  group_of_.clear();
+  for (const auto& [entity, actions] : actions_on) {
+    const auto [found, is_new] = index_of.emplace(actions, groups_.size());
+    if (is_new) {
+      groups_.emplace_back();
+      groups_.back().actions = actions;
+    }
+    groups_[found->second].entities.push_back(entity);
+    group_of_[entity] = found->second;
+  }
+}
+
+DroppedFacets SizeField::set_sources(std::size_t function,
+                                     const std::vector<FacetedSource>& sources) {
+  const SizeFunction& definition = functions_[function];
+  const double slope = growth_slope(definition.growth_rate);
+  DroppedFacets dropped;
+  SizedFacets facets;
+  for (const FacetedSource& source : sources) {
+    const DroppedFacets more =
+        definition.kind == Kind::mesh
+            ? append_mesh_start_sizes(source, definition.quad_size, slope, facets)
+            : append_fixed_start_sizes(source, definition.start_size, slope, facets);
+    dropped.zero_size += more.zero_size;
+    dropped.not_finite += more.not_finite;
+  }
+  facets_[function] = std::move(facets);
+  for (Group& group : groups_) {
+    for (const Action& action : group.actions) {
+      group.changed = group.changed || action.function == function;
+    }
+  }
+  return dropped;
+}
+
+void SizeField::build(const std::vector<Entity>& entities) {
+  std::vector<bool> wanted(groups_.size(), entities.empty());
+  for (const Entity& entity : entities) {
+    const auto found = group_of_.find(entity);
+    if (found != group_of_.end()) {
+      wanted[found->second] = true;
+    }
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    if (wanted[i] && groups_[i].changed) {
+      build_group(i);
+    }
+  }
+}
+
+void SizeField::build_group(std::size_t index) {
+  // Built aside and moved in at the end: if building fails, the group answers as before.
+  Group built;
+  SizedFacets facets;
+  for (const Action& action : groups_[index].actions) {
+    if (!is_effective(action.function)) {
+      continue;
+    }
+    const SizeFunction& function = functions_[action.function];
+    built.size_limit = std::min(built.size_limit, function.size_limit);
+    if (action.inside_source) {
+      built.size_limit = std::min(built.size_limit, function.start_size);
+    } else {
+      const SizedFacets& more = facets_[action.function];
+      facets.insert(facets.end(), more.begin(), more.end());
+    }
+  }
+  built.tree = std::make_shared<FacetTree>(std::move(facets));
+  if (options_.evaluator == Evaluator::grid && !built.tree->empty()) {
+    Box box;
+    for (const Entity& entity : groups_[index].entities) {
+      box.extend(topology_.box(entity));
+    }
+    GridOptions grid_options;
+    grid_options.tolerance = options_.tolerance;
+    grid_options.threads = options_.threads;
+    if (options_.progress) {
+      const std::string what = "Background grid " + std::to_string(index + 1) + " of " +
+                               std::to_string(groups_.size()) + " (" +
+                               entity_names({groups_[index].entities.rbegin(),
+                                             groups_[index].entities.rend()}, 2) +
+                               ")";
+      grid_options.progress = [this, what](double done) { options_.progress(what, done); };
+    }
+    built.grid =
+        std::make_unique<BackgroundGrid>(built.tree, built.size_limit, box, grid_options);
+  }
+  Group& group = groups_[index];
+  group.size_limit = built.size_limit;
+  group.tree = std::move(built.tree);
+  group.grid = std::move(built.grid);
+  group.changed = false;
+}
+
+const SizeField::Group* SizeField::group(const Entity& entity) const {
+  const auto found = group_of_.find(entity);
+  return found == group_of_.end() ? nullptr : &groups_[found->second];
+}
+
+std::vector<std::size_t> SizeField::functions_on(const Entity& entity) const {
+  std::vector<std::size_t> result;
+  if (const Group* found = group(entity)) {
+    for (const Action& action : found->actions) {
+      result.push_back(action.function);
+    }
+  }
+  return result;
+}
+
+double SizeField::size(const Entity& entity, const Vec3& p) const {
+  const Group* found = group(entity);
+  if (found == nullptr || !found->tree || !p.allFinite()) {
+    return no_size;
+  }
+  return found->grid ? found->grid->size(p) : found->tree->size(p, found->size_limit);
+}
+
+double SizeField::exact_size(const Entity& entity, const Vec3& p) const {
+  const Group* found = group(entity);
+  if (found == nullptr || !found->tree || !p.allFinite()) {
+    return no_size;
+  }
+  return found->tree->size(p, found->size_limit);
+}
+
+std::vector<SizeField::GroupSummary> SizeField::groups() const {
+  std::vector<GroupSummary> result;
+  for (const Group& group : groups_) {
+    GroupSummary summary;
+    summary.entities = group.entities;
+    for (const Action& action : group.actions) {
+      summary.functions.push_back(action.function);
+    }
+    summary.size_limit = group.size_limit;
+    if (group.tree) {
+      summary.facets = group.tree->facets().size();
+      summary.tree_bytes = group.tree->memory_bytes();
+    }
+    if (group.grid) {
+      summary.has_grid = true;
+      summary.grid = group.grid->statistics();
+    }
+    result.push_back(std::move(summary));
+  }
+  return result;
+}
+
+std::string SizeField::summary() const {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    const SizeFunction& function = functions_[i];
+    text << function_name(i) << ": from " << entity_names(function.sources) << " into "
+         << entity_names(function.attachments) << ", growth " << shortest(function.growth_rate) << ", limit "
+         << shortest(function.size_limit);
+    if (function.kind == Kind::fixed) {
+      text << ", size " << shortest(function.start_size);
+    }
+    text << (is_effective(i) ? "\n" : " (no effect: its sources have no mesh yet)\n");
+  }
+  std::size_t number = 0;
+  for (const GroupSummary& group : groups()) {
+    text << "Group " << ++number << ": " << group.entities.size() << " entities, functions";
+    for (const std::size_t function : group.functions) {
+      text << ' ' << function + 1;
+    }
+    text << ", " << grouped_digits(group.facets) << " facets";
+    if (group.has_grid) {
+      const BackgroundGrid::Statistics& grid = group.grid;
+      text << ", grid of "
+           << grouped_digits(grid.interpolated_leaves + grid.exact_leaves) << " cells ("
+           << grouped_digits(grid.exact_leaves) << " exact), depth " << grid.depth << ", "
+           << rounded(static_cast<double>(grid.bytes + group.tree_bytes) / 1e6, 1) << " MB, "
+           << rounded(grid.seconds, 2) << " s";
+    }
+    text << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace meshgrow

@@ -1,0 +1,133 @@
+#ifndef MESHGROW_SIZE_FIELD_H
+#define MESHGROW_SIZE_FIELD_H
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "background_grid.h"
+#include "size_function.h"
+#include "topology.h"
+
+namespace meshgrow {
+
+/// Who answers `SizeField::size`.
+enum class Evaluator {
+  grid,  ///< the background grid of the entity's group
+  exact  ///< the tree: slower a size, nothing to build
+};
+
+struct FieldOptions {
+  double tolerance = 0.05;  ///< of the background grids, relative
+  Evaluator evaluator = Evaluator::grid;
+  int threads = 0;  ///< that build grids; 0: OpenMP's default
+  /// Called while a grid is built, from the building thread only: what is built, finished fraction.
+  std::function<void(const std::string&, double)> progress;
+};
+
+/// The size field of a model: all size functions, the groups of entities on which they act, a tree
+/// and a background grid for each group (paper, section 4.3; DESIGN.md, section 2).
+///
+/// Thread safety: `size`, `exact_size` and the other const functions may be called from any thread
+/// while no other member function runs.
+class SizeField {
+ public:
+  /// What `size` answers where no size function acts.
+  static constexpr double no_size = std::numeric_limits<double>::infinity();
+
+  explicit SizeField(Topology topology, FieldOptions options = {});
+
+  /// Checks and adds a function; returns its index. Throws Error and adds nothing if it is unusable.
+  std::size_t add(SizeFunction function);
+
+  const std::vector<SizeFunction>& functions() const { return functions_; }
+  const Topology& topology() const { return topology_; }
+  FieldOptions& options() { return options_; }
+  const FieldOptions& options() const { return options_; }
+
+  /// "Mesh size function 1", as messages name it.
+  std::string function_name(std::size_t function) const;
+
+  /// Gives a function the pieces of its sources and computes their start sizes. Without any, the
+  /// function has no effect. Takes effect with the next `build`.
+  DroppedFacets set_sources(std::size_t function, const std::vector<FacetedSource>& sources);
+
+  /// False while the sources of the function have given it no facet.
+  bool is_effective(std::size_t function) const { return !facets_[function].empty(); }
+
+  /// Brings trees and grids of the groups of these entities up to date (of all groups, if `entities`
+  /// is empty). Groups not built since a change answer as before it; never built ones, `no_size`.
+  void build(const std::vector<Entity>& entities = {});
+
+  /// True if some function acts on the entity: attached itself, or below an attachment.
+  bool acts_on(const Entity& entity) const { return group_of_.count(entity) > 0; }
+
+  /// Indices of the functions that act on the entity.
+  std::vector<std::size_t> functions_on(const Entity& entity) const;
+
+  /// Size asked for on the entity at p, model units; `no_size` where no function acts or p is not
+  /// finite. At most (1 + tolerance) times the exact size.
+  double size(const Entity& entity, const Vec3& p) const;
+
+  /// The same without the grid: the minimum over all facets.
+  double exact_size(const Entity& entity, const Vec3& p) const;
+
+  struct GroupSummary {
+    std::vector<Entity> entities;
+    std::vector<std::size_t> functions;
+    std::size_t facets = 0;
+    double size_limit = no_size;
+    bool has_grid = false;
+    BackgroundGrid::Statistics grid;
+    std::size_t tree_bytes = 0;
+  };
+  std::vector<GroupSummary> groups() const;
+
+  /// Functions, groups and grids as lines of text for people.
+  std::string summary() const;
+
+ private:
+  struct EntityHash {
+    std::size_t operator()(const Entity& entity) const {
+      return std::hash<long long>()(static_cast<long long>(entity.tag) * 4 + entity.dim);
+    }
+  };
+
+  /// A function as a group sees it. Inside a source volume a fixed function has its start size
+  /// everywhere, since the distance to the source is zero there.
+  struct Action {
+    std::size_t function = 0;
+    bool inside_source = false;
+    friend bool operator<(const Action& a, const Action& b) {
+      return std::tie(a.function, a.inside_source) < std::tie(b.function, b.inside_source);
+    }
+  };
+
+  struct Group {
+    std::vector<Action> actions;
+    std::vector<Entity> entities;
+    bool changed = true;
+    double size_limit = no_size;
+    std::shared_ptr<const FacetTree> tree;
+    std::unique_ptr<const BackgroundGrid> grid;
+  };
+
+  void regroup();
+  void build_group(std::size_t index);
+  const Group* group(const Entity& entity) const;
+
+  Topology topology_;
+  FieldOptions options_;
+  std::vector<SizeFunction> functions_;
+  std::vector<SizedFacets> facets_;
+  std::vector<Group> groups_;
+  std::unordered_map<Entity, std::size_t, EntityHash> group_of_;
+};
+
+}  // namespace meshgrow
+
+#endif

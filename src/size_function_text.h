@@ -1,0 +1,26 @@
+#ifndef MESHGROW_SIZE_FUNCTION_TEXT_H
+#define MESHGROW_SIZE_FUNCTION_TEXT_H
+
+#include <string>
+
+#include "size_function.h"
+#include "topology.h"
+
+namespace meshgrow {
+
+/// Reads the one-line text of a size function (DESIGN.md, section 4), for example
+///
+///     mesh  source Surface{7}   attach Volume{2}                 growth 1.2 limit 2
+///     fixed source Curve{1,4:6} attach Physical Surface{"inlet"} size 0.1 growth 1.2 limit 2
+///
+/// Entities are written as in .geo: Point, Curve (or Line), Surface, Volume with tags, ranges a:b, or
+/// : for all; Physical before them takes physical tags and names (quotes may be left out). After
+/// `source` and `attach` several such selections may stand, separated by commas.
+///
+/// Throws Error that tells the position (counted from 1) and what was expected there, and for
+/// entities or physical groups that are not in the model. Thread-safe.
+SizeFunction parse_size_function(const std::string& text, const Topology& topology);
+
+}  // namespace meshgrow
+
+#endif
