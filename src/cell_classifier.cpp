@@ -7,8 +7,8 @@ namespace meshgrow {
 
 namespace {
 
-/// Up to so many facets it is cheaper to ask each of them than to descend the tree.
-constexpr std::size_t direct_evaluation_limit = 32;
+/// Up to so many facets it is cheaper to look at the tangent plane of each than to descend the tree.
+constexpr std::size_t direct_evaluation_limit = 2048;
 
 /// Below this distance, in half edges, the direction to a facet is mostly rounding.
 constexpr double smallest_direction = 1e-6;
@@ -146,22 +146,34 @@ bool CellClassifier::few_facets_suffice() {
   return true;
 }
 
+double CellClassifier::size_by_ruling_facets(const Vec3& p, const Vec3& local) const {
+  double size = size_limit_;
+  const auto ask = [&](std::size_t k) {
+    size = std::min(size, tree_.facets()[ruling_[k]].size_at(p));
+  };
+  if (best_ >= 0) {
+    ask(static_cast<std::size_t>(best_));
+  }
+  for (std::size_t k = 0; k < ruling_.size(); ++k) {
+    const Tangent& tangent = ruling_tangents_[k];
+    if (tangent.at_centre + tangent.slope_times_half_edge.dot(local) < size) {
+      ask(k);
+    }
+  }
+  return size;
+}
+
 const Lattice& CellClassifier::lattice(const GridCell& cell) {
   if (lattice_known_) {
     return lattice_;
   }
   const bool direct = ruling_.size() <= direct_evaluation_limit;
   for (int i = 0; i < 27; ++i) {
-    const Vec3 p = lattice_point(cell, i);
-    if (!direct) {
-      lattice_[i] = exact_size(p);
-      continue;
+    if (i % 3 == 1 || i / 3 % 3 == 1 || i / 9 == 1) {
+      const Vec3 p = lattice_point(cell, i);
+      lattice_[i] = direct ? size_by_ruling_facets(p, Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1))
+                           : tree_.size(p, size_limit_);
     }
-    double size = size_limit_;
-    for (const std::uint32_t facet : ruling_) {
-      size = std::min(size, tree_.facets()[facet].size_at(p));
-    }
-    lattice_[i] = size;
   }
   for (int corner = 0; corner < 8; ++corner) {
     lattice_[lattice_index_of_corner(corner)] = cell.corner_values[corner];

@@ -42,9 +42,6 @@ class CellClassifier {
   /// After classify: exact sizes at the corners of the cell's children.
   const Lattice& lattice(const GridCell& cell);
 
-  /// The exact size at p, by the tree.
-  double exact_size(const Vec3& p) const { return tree_.size(p, size_limit_); }
-
  private:
   struct Tangent {
     double at_centre = 0.0;
@@ -64,6 +61,9 @@ class CellClassifier {
   bool never_too_coarse(const GridCell& cell) const;
   bool not_much_too_fine(const GridCell& cell);
   bool few_facets_suffice();
+
+  /// The exact size at p, whose place in the cell is `local`, in half edges from the centre.
+  double size_by_ruling_facets(const Vec3& p, const Vec3& local) const;
 
   const FacetTree& tree_;
   double size_limit_;

@@ -1,0 +1,344 @@
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "error.h"
+#include "gmsh_api.h"
+#include "mesh_report.h"
+#include "meshgrow.h"
+#include "model_field.h"
+#include "model_reader.h"
+
+struct meshgrow_field {
+  meshgrow::ModelField model_field;
+};
+
+namespace {
+
+using meshgrow::Entity;
+using meshgrow::Error;
+using nlohmann::json;
+
+thread_local std::string last_error;
+
+/// Runs the body; its exceptions become the thread's last error and the result `failed`.
+template <typename Result, typename Body>
+Result guarded(Result failed, Body body) noexcept {
+  try {
+    last_error.clear();
+    return body();
+  } catch (const std::bad_alloc&) {
+    last_error = "Out of memory: raise the tolerance or use fewer facets.";
+  } catch (const std::exception& error) {
+    last_error = error.what();
+  } catch (...) {
+    last_error = "An unknown error occurred.";
+  }
+  return failed;
+}
+
+char* copy_text(const std::string& text) {
+  char* copy = static_cast<char*>(std::malloc(text.size() + 1));
+  if (copy == nullptr) {
+    throw std::bad_alloc();
+  }
+  std::memcpy(copy, text.c_str(), text.size() + 1);
+  return copy;
+}
+
+std::vector<Entity> entities_of(const int* dim_tags, size_t count) {
+  if (count % 2 != 0) {
+    throw Error("A list of entities has an odd number of ints: give pairs of dimension and tag.");
+  }
+  std::vector<Entity> result;
+  for (size_t i = 0; i < count; i += 2) {
+    result.push_back({dim_tags[i], dim_tags[i + 1]});
+  }
+  return result;
+}
+
+meshgrow::ModelField& deref(meshgrow_field* field) {
+  if (field == nullptr) {
+    throw Error("There is no size field: create one first.");
+  }
+  return field->model_field;
+}
+
+using SizeOf = double (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec3&) const;
+
+int sizes_at(meshgrow_field* field, SizeOf size_of, int dim, int tag, const double* points,
+             size_t points_n, double* sizes) {
+  return guarded(1, [&] {
+    deref(field).refresh_if_needed();
+    const meshgrow::SizeField& size_field = deref(field).field();
+    if (!size_field.topology().contains({dim, tag})) {
+      throw Error(meshgrow::entity_name({dim, tag}) +
+                  " is not in the model: check its dimension and tag.");
+    }
+    for (size_t i = 0; i < points_n; ++i) {
+      sizes[i] = (size_field.*size_of)(
+          {dim, tag}, meshgrow::Vec3(points[3 * i], points[3 * i + 1], points[3 * i + 2]));
+    }
+    return 0;
+  });
+}
+
+/// JSON has no word for "not a number": null stands for it.
+json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+double number_or_unknown(const json& value) {
+  return value.is_number() ? value.get<double>() : meshgrow::MeshReport::unknown;
+}
+
+struct ReportKey {
+  const char* name;
+  double meshgrow::MeshReport::*value;
+};
+
+constexpr ReportKey report_keys[] = {
+    {"smallest_size", &meshgrow::MeshReport::smallest_size},
+    {"largest_size", &meshgrow::MeshReport::largest_size},
+    {"ratio_max", &meshgrow::MeshReport::ratio_max},
+    {"ratio_99", &meshgrow::MeshReport::ratio_99},
+    {"length_median", &meshgrow::MeshReport::length_median},
+    {"length_share_good", &meshgrow::MeshReport::length_share_good},
+    {"length_share_over_2", &meshgrow::MeshReport::length_share_over_2},
+    {"gamma_min", &meshgrow::MeshReport::gamma_min},
+    {"gamma_mean", &meshgrow::MeshReport::gamma_mean},
+    {"sicn_min", &meshgrow::MeshReport::sicn_min},
+    {"sicn_mean", &meshgrow::MeshReport::sicn_mean}};
+
+json to_json(const meshgrow::MeshReport& report) {
+  json result = {{"elements", report.elements}};
+  for (const ReportKey& key : report_keys) {
+    result[key.name] = number_or_null(report.*key.value);
+  }
+  return result;
+}
+
+meshgrow::MeshReport report_from(const json& text) {
+  meshgrow::MeshReport report;
+  report.elements = text.at("elements").get<size_t>();
+  for (const ReportKey& key : report_keys) {
+    report.*key.value = number_or_unknown(text.at(key.name));
+  }
+  return report;
+}
+
+json dim_tags(const std::vector<Entity>& entities) {
+  json result = json::array();
+  for (const Entity& entity : entities) {
+    result.push_back({entity.dim, entity.tag});
+  }
+  return result;
+}
+
+json summary_json(const meshgrow::SizeField& field) {
+  json functions = json::array();
+  for (size_t i = 0; i < field.functions().size(); ++i) {
+    const meshgrow::SizeFunction& function = field.functions()[i];
+    functions.push_back({{"kind", meshgrow::kind_name(function.kind)},
+                         {"sources", dim_tags(function.sources)},
+                         {"attachments", dim_tags(function.attachments)},
+                         {"growth_rate", function.growth_rate},
+                         {"size_limit", function.size_limit},
+                         {"effective", field.is_effective(i)}});
+  }
+  json groups = json::array();
+  for (const meshgrow::SizeField::GroupSummary& group : field.groups()) {
+    json entry = {{"entities", dim_tags(group.entities)},
+                  {"functions", group.functions},
+                  {"facets", group.facets},
+                  {"tree_bytes", group.tree_bytes},
+                  {"grid", nullptr}};
+    if (group.has_grid) {
+      entry["grid"] = {{"interpolated_cells", group.grid.interpolated_leaves},
+                       {"exact_cells", group.grid.exact_leaves},
+                       {"depth", group.grid.depth},
+                       {"bytes", group.grid.bytes},
+                       {"seconds", group.grid.seconds}};
+    }
+    groups.push_back(entry);
+  }
+  return {{"functions", functions}, {"groups", groups}};
+}
+
+void set_option(meshgrow::ModelField& model_field, const std::string& name, double value) {
+  meshgrow::FieldOptions& options = model_field.field().options();
+  if (name == "tolerance") {
+    if (!(value >= 1e-4 && value <= 1.0)) {
+      throw Error("The tolerance must be a number from 0.0001 to 1, for example 0.05.");
+    }
+    options.tolerance = value;
+  } else if (name == "threads") {
+    if (!(value >= 0.0 && value <= 1024.0)) {
+      throw Error("The number of threads must be from 0 (all) to 1024.");
+    }
+    options.threads = static_cast<int>(value);
+  } else if (name == "exact") {
+    options.evaluator = value != 0.0 ? meshgrow::Evaluator::exact : meshgrow::Evaluator::grid;
+  } else if (name == "strict") {
+    model_field.set_strict(value != 0.0);
+  } else {
+    throw Error("There is no option \"" + name +
+                "\": give \"tolerance\", \"threads\", \"exact\" or \"strict\".");
+  }
+}
+
+}  // namespace
+
+const char* meshgrow_version(void) { return MESHGROW_VERSION; }
+
+const char* meshgrow_last_error(void) { return last_error.c_str(); }
+
+void meshgrow_free(char* text) { std::free(text); }
+
+meshgrow_field* meshgrow_field_create(void) {
+  return guarded(static_cast<meshgrow_field*>(nullptr), [] { return new meshgrow_field(); });
+}
+
+void meshgrow_field_destroy(meshgrow_field* field) { delete field; }
+
+int meshgrow_field_add_mesh(meshgrow_field* field, const int* sources, size_t sources_n,
+                            const int* attach, size_t attach_n, double growth_rate,
+                            double size_limit, int quad_sides) {
+  return guarded(1, [&] {
+    meshgrow::SizeFunction function;
+    function.kind = meshgrow::Kind::mesh;
+    function.sources = entities_of(sources, sources_n);
+    function.attachments = entities_of(attach, attach_n);
+    function.growth_rate = growth_rate;
+    function.size_limit = size_limit;
+    function.quad_size =
+        quad_sides != 0 ? meshgrow::QuadSize::sides : meshgrow::QuadSize::triangles;
+    deref(field).add(std::move(function));
+    return 0;
+  });
+}
+
+int meshgrow_field_add_fixed(meshgrow_field* field, const int* sources, size_t sources_n,
+                             const int* attach, size_t attach_n, double size, double growth_rate,
+                             double size_limit) {
+  return guarded(1, [&] {
+    meshgrow::SizeFunction function;
+    function.kind = meshgrow::Kind::fixed;
+    function.sources = entities_of(sources, sources_n);
+    function.attachments = entities_of(attach, attach_n);
+    function.start_size = size;
+    function.growth_rate = growth_rate;
+    function.size_limit = size_limit;
+    deref(field).add(std::move(function));
+    return 0;
+  });
+}
+
+int meshgrow_field_add(meshgrow_field* field, const char* text) {
+  return guarded(1, [&] {
+    deref(field).add(std::string(text));
+    return 0;
+  });
+}
+
+int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value) {
+  return guarded(1, [&] {
+    set_option(deref(field), name, value);
+    return 0;
+  });
+}
+
+int meshgrow_field_refresh(meshgrow_field* field) {
+  return guarded(1, [&] {
+    deref(field).refresh();
+    return 0;
+  });
+}
+
+int meshgrow_field_register(meshgrow_field* field) {
+  return guarded(1, [&] {
+    deref(field).register_callback();
+    return 0;
+  });
+}
+
+int meshgrow_field_unregister(meshgrow_field* field) {
+  return guarded(1, [&] {
+    deref(field).unregister_callback();
+    return 0;
+  });
+}
+
+int meshgrow_field_generate(meshgrow_field* field, int dim) {
+  return guarded(1, [&] {
+    deref(field).generate(dim);
+    return 0;
+  });
+}
+
+int meshgrow_field_size(meshgrow_field* field, int dim, int tag, const double* points,
+                        size_t points_n, double* sizes) {
+  return sizes_at(field, &meshgrow::SizeField::size, dim, tag, points, points_n, sizes);
+}
+
+int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag, const double* points,
+                              size_t points_n, double* sizes) {
+  return sizes_at(field, &meshgrow::SizeField::exact_size, dim, tag, points, points_n, sizes);
+}
+
+double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x, double y,
+                             double z, double proposed) {
+  return field == nullptr
+             ? proposed
+             : meshgrow::answer_size(field->model_field.field(), dim, tag, x, y, z, proposed);
+}
+
+char* meshgrow_field_summary(meshgrow_field* field) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    deref(field).refresh_if_needed();
+    return copy_text(deref(field).field().summary());
+  });
+}
+
+char* meshgrow_field_summary_json(meshgrow_field* field) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    deref(field).refresh_if_needed();
+    return copy_text(summary_json(deref(field).field()).dump());
+  });
+}
+
+char* meshgrow_report_json(int dim, const int* entities, size_t entities_n,
+                           meshgrow_field* field) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    if (dim != 2 && dim != 3) {
+      throw Error("A report is about dimension 2 or 3, not " + std::to_string(dim) + ".");
+    }
+    meshgrow::gmsh::require_gmsh();
+    const std::vector<Entity> asked = entities_of(entities, entities_n);
+    const meshgrow::Topology topology = meshgrow::read_topology();
+    for (const Entity& entity : asked) {
+      if (entity.dim != dim || !topology.contains(entity)) {
+        throw Error(meshgrow::entity_name(entity) + " is not a " + meshgrow::dimension_name(dim) +
+                    " of the model: check its dimension and tag.");
+      }
+    }
+    const meshgrow::ReportMesh mesh = meshgrow::read_report_mesh(dim, asked);
+    meshgrow::SizeAsked size_asked;
+    if (field != nullptr) {
+      deref(field).refresh_if_needed();
+      size_asked = [field](const Entity& entity, const meshgrow::Vec3& p) {
+        return field->model_field.field().size(entity, p);
+      };
+    }
+    return copy_text(to_json(meshgrow::make_report(mesh, size_asked)).dump());
+  });
+}
+
+char* meshgrow_report_table(const char* reports_json) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    std::vector<meshgrow::NamedReport> reports;
+    for (const json& entry : json::parse(reports_json)) {
+      reports.push_back({entry.at("name").get<std::string>(), report_from(entry.at("report"))});
+    }
+    return copy_text(meshgrow::report_table(reports));
+  });
+}

@@ -1,0 +1,356 @@
+#include "gmsh_api.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "gmsh_library.h"
+
+namespace meshgrow::gmsh {
+
+namespace {
+
+GmshLibrary& library() { return GmshLibrary::instance(); }
+
+/// An array that Gmsh allocates and the caller frees.
+template <typename T>
+class GmshArray {
+ public:
+  GmshArray() = default;
+  GmshArray(const GmshArray&) = delete;
+  GmshArray& operator=(const GmshArray&) = delete;
+  ~GmshArray() { library().free(data_); }
+
+  T** data() { return &data_; }
+  std::size_t* size() { return &size_; }
+  std::vector<T> copy() const { return std::vector<T>(data_, data_ + size_); }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// An array of arrays that Gmsh allocates.
+template <typename T>
+class GmshArrays {
+ public:
+  GmshArrays() = default;
+  GmshArrays(const GmshArrays&) = delete;
+  GmshArrays& operator=(const GmshArrays&) = delete;
+  ~GmshArrays() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      library().free(data_[i]);
+    }
+    library().free(data_);
+    library().free(sizes_);
+  }
+
+  T*** data() { return &data_; }
+  std::size_t** sizes() { return &sizes_; }
+  std::size_t* count() { return &count_; }
+  std::vector<T> copy(std::size_t i) const {
+    return std::vector<T>(data_[i], data_[i] + sizes_[i]);
+  }
+
+ private:
+  T** data_ = nullptr;
+  std::size_t* sizes_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+std::string take_string(char* text) {
+  const std::string result = text == nullptr ? "" : text;
+  library().free(text);
+  return result;
+}
+
+std::vector<Entity> to_entities(const std::vector<int>& dim_tags) {
+  std::vector<Entity> result;
+  for (std::size_t i = 0; i + 1 < dim_tags.size(); i += 2) {
+    result.push_back({dim_tags[i], dim_tags[i + 1]});
+  }
+  return result;
+}
+
+std::vector<int> to_dim_tags(const std::vector<Entity>& entities) {
+  std::vector<int> result;
+  for (const Entity& entity : entities) {
+    result.push_back(entity.dim);
+    result.push_back(entity.tag);
+  }
+  return result;
+}
+
+Nodes get_nodes(int dim, int tag, bool parametric) {
+  GmshArray<std::size_t> tags;
+  GmshArray<double> coordinates;
+  GmshArray<double> parameters;
+  library().call("gmshModelMeshGetNodes", tags.data(), tags.size(), coordinates.data(),
+                 coordinates.size(), parameters.data(), parameters.size(), dim, tag, 0,
+                 parametric ? 1 : 0);
+  return {tags.copy(), coordinates.copy(), parameters.copy()};
+}
+
+}  // namespace
+
+Version require_gmsh() {
+  // Resolved first, so that a missing library is told as such.
+  GmshLibrary& gmsh = library();
+  char* text = nullptr;
+  try {
+    gmsh.call("gmshOptionGetString", static_cast<const char*>("General.Version"), &text);
+  } catch (const Error&) {
+    throw Error("Gmsh is not initialized: call gmsh.initialize() first.");
+  }
+  const std::string version_text = take_string(text);
+  Version version;
+  if (std::sscanf(version_text.c_str(), "%d.%d", &version.major, &version.minor) != 2) {
+    throw Error("The libgmsh in use (" + gmsh.path() + ") tells no version: install Gmsh 4.8 or "
+                "later.");
+  }
+  if (std::make_pair(version.major, version.minor) < std::make_pair(4, 8)) {
+    throw Error("The libgmsh in use (" + gmsh.path() + ") is version " + version_text +
+                ": install Gmsh 4.8 or later.");
+  }
+  return version;
+}
+
+void initialize(const std::vector<std::string>& arguments) {
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) {
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  }
+  const auto argc = static_cast<int>(argv.size());
+  argv.push_back(nullptr);
+  // Gmsh 4.9 added both this function and the argument `run`.
+  if (library().has("gmshModelMeshGetMaxNodeTag")) {
+    library().call("gmshInitialize", argc, argv.data(), 1, 0);
+  } else {
+    library().call("gmshInitialize", argc, argv.data(), 1);
+  }
+  require_gmsh();
+}
+
+void finalize() { library().call("gmshFinalize"); }
+void open(const std::string& file) { library().call("gmshOpen", file.c_str()); }
+void merge(const std::string& file) { library().call("gmshMerge", file.c_str()); }
+void write(const std::string& file) { library().call("gmshWrite", file.c_str()); }
+
+double option(const std::string& name) {
+  double value = 0.0;
+  library().call("gmshOptionGetNumber", name.c_str(), &value);
+  return value;
+}
+
+void set_option(const std::string& name, double value) {
+  library().call("gmshOptionSetNumber", name.c_str(), value);
+}
+
+std::string current_model() {
+  char* name = nullptr;
+  library().call("gmshModelGetCurrent", &name);
+  return take_string(name);
+}
+
+void set_current_model(const std::string& name) {
+  library().call("gmshModelSetCurrent", name.c_str());
+}
+
+std::vector<std::string> models() {
+  char** names = nullptr;
+  std::size_t count = 0;
+  library().call("gmshModelList", &names, &count);
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < count; ++i) {
+    result.push_back(take_string(names[i]));
+  }
+  library().free(names);
+  return result;
+}
+
+void log(const std::string& message, const std::string& level) {
+  library().call("gmshLoggerWrite", message.c_str(), level.c_str());
+}
+
+std::vector<Entity> entities() {
+  GmshArray<int> dim_tags;
+  library().call("gmshModelGetEntities", dim_tags.data(), dim_tags.size(), -1);
+  return to_entities(dim_tags.copy());
+}
+
+std::vector<Entity> boundary(const Entity& entity) {
+  std::array<int, 2> dim_tag = {entity.dim, entity.tag};
+  GmshArray<int> result;
+  // Not combined, or seams would cancel out; not oriented, or tags would be signed.
+  library().call("gmshModelGetBoundary", dim_tag.data(), dim_tag.size(), result.data(),
+                 result.size(), 0, 0, 0);
+  return to_entities(result.copy());
+}
+
+std::vector<Entity> embedded(const Entity& entity) {
+  GmshArray<int> result;
+  library().call("gmshModelMeshGetEmbedded", entity.dim, entity.tag, result.data(),
+                 result.size());
+  return to_entities(result.copy());
+}
+
+Box bounding_box(const Entity& entity) {
+  Vec3 low;
+  Vec3 high;
+  library().call("gmshModelGetBoundingBox", entity.dim, entity.tag, &low.x(), &low.y(), &low.z(),
+                 &high.x(), &high.y(), &high.z());
+  return Box(low, high);
+}
+
+std::string entity_type(const Entity& entity) {
+  char* name = nullptr;
+  library().call("gmshModelGetType", entity.dim, entity.tag, &name);
+  return take_string(name);
+}
+
+std::vector<Entity> physical_groups() {
+  GmshArray<int> dim_tags;
+  library().call("gmshModelGetPhysicalGroups", dim_tags.data(), dim_tags.size(), -1);
+  return to_entities(dim_tags.copy());
+}
+
+std::string physical_name(const Entity& group) {
+  char* name = nullptr;
+  library().call("gmshModelGetPhysicalName", group.dim, group.tag, &name);
+  return take_string(name);
+}
+
+std::vector<Entity> entities_of_physical_group(const Entity& group) {
+  GmshArray<int> tags;
+  library().call("gmshModelGetEntitiesForPhysicalGroup", group.dim, group.tag, tags.data(),
+                 tags.size());
+  std::vector<Entity> result;
+  for (const int tag : tags.copy()) {
+    result.push_back({group.dim, tag});
+  }
+  return result;
+}
+
+bool visible(const Entity& entity) {
+  int value = 0;
+  library().call("gmshModelGetVisibility", entity.dim, entity.tag, &value);
+  return value != 0;
+}
+
+void set_visible(const std::vector<Entity>& entities, bool visible) {
+  std::vector<int> dim_tags = to_dim_tags(entities);
+  library().call("gmshModelSetVisibility", dim_tags.data(), dim_tags.size(), visible ? 1 : 0, 0);
+}
+
+Nodes nodes(const Entity& entity) { return get_nodes(entity.dim, entity.tag, true); }
+Nodes all_nodes() { return get_nodes(-1, -1, false); }
+
+void add_nodes(const Entity& entity, const Nodes& nodes) {
+  library().call("gmshModelMeshAddNodes", entity.dim, entity.tag, nodes.tags.data(),
+                 nodes.tags.size(), nodes.coordinates.data(), nodes.coordinates.size(),
+                 nodes.parametric_coordinates.data(), nodes.parametric_coordinates.size());
+}
+
+std::vector<Elements> elements(const Entity& entity) {
+  GmshArray<int> types;
+  GmshArrays<std::size_t> tags;
+  GmshArrays<std::size_t> node_tags;
+  library().call("gmshModelMeshGetElements", types.data(), types.size(), tags.data(), tags.sizes(),
+                 tags.count(), node_tags.data(), node_tags.sizes(), node_tags.count(), entity.dim,
+                 entity.tag);
+  std::vector<Elements> result;
+  const std::vector<int> type_list = types.copy();
+  for (std::size_t i = 0; i < type_list.size(); ++i) {
+    result.push_back({type_list[i], tags.copy(i), node_tags.copy(i)});
+  }
+  return result;
+}
+
+bool has_elements(const Entity& entity) {
+  GmshArray<int> types;
+  library().call("gmshModelMeshGetElementTypes", types.data(), types.size(), entity.dim,
+                 entity.tag);
+  return *types.size() > 0;
+}
+
+void add_elements(const Entity& entity, const std::vector<Elements>& elements) {
+  for (const Elements& block : elements) {
+    library().call("gmshModelMeshAddElementsByType", entity.tag, block.type, block.tags.data(),
+                   block.tags.size(), block.node_tags.data(), block.node_tags.size());
+  }
+}
+
+ElementType element_type(int type) {
+  char* name = nullptr;
+  int order = 0;
+  ElementType result;
+  GmshArray<double> local;
+  library().call("gmshModelMeshGetElementProperties", type, &name, &result.dim, &order,
+                 &result.node_count, local.data(), local.size(), &result.corner_count);
+  result.name = take_string(name);
+  return result;
+}
+
+void clear_mesh(const std::vector<Entity>& entities) {
+  std::vector<int> dim_tags = to_dim_tags(entities);
+  library().call("gmshModelMeshClear", dim_tags.data(), dim_tags.size());
+}
+
+void generate(int dim) { library().call("gmshModelMeshGenerate", dim); }
+
+void set_order(int order) { library().call("gmshModelMeshSetOrder", order); }
+
+std::string last_error() {
+  char* message = nullptr;
+  library().call("gmshLoggerGetLastError", &message);
+  return take_string(message);
+}
+
+std::vector<std::array<double, 2>> parameter_bounds(const Entity& entity) {
+  GmshArray<double> low;
+  GmshArray<double> high;
+  library().call("gmshModelGetParametrizationBounds", entity.dim, entity.tag, low.data(),
+                 low.size(), high.data(), high.size());
+  const std::vector<double> lows = low.copy();
+  const std::vector<double> highs = high.copy();
+  std::vector<std::array<double, 2>> result;
+  for (std::size_t i = 0; i < lows.size() && i < highs.size(); ++i) {
+    result.push_back({lows[i], highs[i]});
+  }
+  return result;
+}
+
+std::vector<Vec3> points_at(const Entity& entity, const std::vector<double>& parameters) {
+  GmshArray<double> coordinates;
+  library().call("gmshModelGetValue", entity.dim, entity.tag, parameters.data(), parameters.size(),
+                 coordinates.data(), coordinates.size());
+  const std::vector<double> flat = coordinates.copy();
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i + 2 < flat.size(); i += 3) {
+    result.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  }
+  return result;
+}
+
+bool is_inside(const Entity& surface, double u, double v) {
+  std::array<double, 2> parameters = {u, v};
+  // Gmsh 4.9 added the argument that tells parametric coordinates from points in space.
+  if (library().has("gmshModelMeshGetMaxNodeTag")) {
+    return library().call_int("gmshModelIsInside", surface.dim, surface.tag, parameters.data(),
+                              parameters.size(), 1) > 0;
+  }
+  return library().call_int("gmshModelIsInside", surface.dim, surface.tag, parameters.data(),
+                            parameters.size()) > 0;
+}
+
+void set_size_callback(SizeCallback48 until_48, SizeCallback49 since_49, void* data) {
+  const Version version = require_gmsh();
+  if (std::make_pair(version.major, version.minor) >= std::make_pair(4, 9)) {
+    library().call("gmshModelMeshSetSizeCallback", since_49, data);
+  } else {
+    library().call("gmshModelMeshSetSizeCallback", until_48, data);
+  }
+}
+
+void remove_size_callback() { library().call("gmshModelMeshRemoveSizeCallback"); }
+
+}  // namespace meshgrow::gmsh

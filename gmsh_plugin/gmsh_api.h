@@ -1,0 +1,113 @@
+#ifndef MESHGROW_GMSH_API_H
+#define MESHGROW_GMSH_API_H
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "entity.h"
+#include "geometry.h"
+
+/// The part of Gmsh that meshgrow uses, as C++ values over the C API found at run time. Every
+/// function throws meshgrow::Error with Gmsh's message when Gmsh reports a failure. Not thread-safe,
+/// as Gmsh is not, unless said otherwise.
+namespace meshgrow::gmsh {
+
+struct Version {
+  int major = 0;
+  int minor = 0;
+};
+
+/// Throws Error unless Gmsh is initialized and at least 4.8.
+Version require_gmsh();
+
+/// Starts Gmsh with a command line of its own; reads its configuration files as the program does.
+void initialize(const std::vector<std::string>& arguments);
+void finalize();
+void open(const std::string& file);
+void merge(const std::string& file);
+void write(const std::string& file);
+
+double option(const std::string& name);
+void set_option(const std::string& name, double value);
+
+std::string current_model();
+void set_current_model(const std::string& name);
+std::vector<std::string> models();
+
+/// Gmsh's log: `level` is "info", "warning" or "error".
+void log(const std::string& message, const std::string& level = "info");
+
+std::vector<Entity> entities();
+/// Entities one dimension below on the boundary, seams included.
+std::vector<Entity> boundary(const Entity& entity);
+std::vector<Entity> embedded(const Entity& entity);
+Box bounding_box(const Entity& entity);
+/// Gmsh's name of the kind of entity, such as "Plane" or "Discrete surface".
+std::string entity_type(const Entity& entity);
+
+std::vector<Entity> physical_groups();
+std::string physical_name(const Entity& group);
+std::vector<Entity> entities_of_physical_group(const Entity& group);
+
+bool visible(const Entity& entity);
+void set_visible(const std::vector<Entity>& entities, bool visible);
+
+struct Nodes {
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates;             ///< three a node
+  std::vector<double> parametric_coordinates;  ///< one a node on curves, two on surfaces, or none
+};
+
+/// Nodes classified on the entity, those of its boundary not included.
+Nodes nodes(const Entity& entity);
+/// All nodes of the model, without parametric coordinates.
+Nodes all_nodes();
+void add_nodes(const Entity& entity, const Nodes& nodes);
+
+/// Elements of one type.
+struct Elements {
+  int type = 0;
+  std::vector<std::size_t> tags;
+  std::vector<std::size_t> node_tags;  ///< all nodes of the first element, then of the next
+};
+
+std::vector<Elements> elements(const Entity& entity);
+bool has_elements(const Entity& entity);
+void add_elements(const Entity& entity, const std::vector<Elements>& elements);
+
+struct ElementType {
+  std::string name;  ///< such as "Triangle 6"
+  int dim = 0;
+  int node_count = 0;
+  int corner_count = 0;
+};
+ElementType element_type(int type);
+
+/// Deletes the meshes of these entities.
+void clear_mesh(const std::vector<Entity>& entities);
+void generate(int dim);
+/// Makes all elements of this order.
+void set_order(int order);
+std::string last_error();
+
+/// Parameter ranges of a curve (one) or surface (two): {min, max} each.
+std::vector<std::array<double, 2>> parameter_bounds(const Entity& entity);
+/// Points at parameters: none for a point, one a curve point, two a surface point.
+std::vector<Vec3> points_at(const Entity& entity, const std::vector<double>& parameters);
+/// Whether the surface's trimming curves enclose the parameters (u, v).
+bool is_inside(const Entity& surface, double u, double v);
+
+/// Gmsh's size callback until 4.8, and since 4.9.
+using SizeCallback48 = double (*)(int dim, int tag, double x, double y, double z, void* data);
+using SizeCallback49 = double (*)(int dim, int tag, double x, double y, double z, double lc,
+                                  void* data);
+
+/// Registers the callback that fits the running Gmsh with the current model (with all, in 4.8).
+void set_size_callback(SizeCallback48 until_48, SizeCallback49 since_49, void* data);
+void remove_size_callback();
+
+}  // namespace meshgrow::gmsh
+
+#endif

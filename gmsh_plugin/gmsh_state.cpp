@@ -1,0 +1,69 @@
+#include "gmsh_state.h"
+
+#include <algorithm>
+
+#include "error.h"
+#include "gmsh_api.h"
+
+namespace meshgrow {
+
+CurrentModel::CurrentModel(const std::string& name) : before_(gmsh::current_model()) {
+  if (before_ == name) {
+    return;
+  }
+  const std::vector<std::string> models = gmsh::models();
+  if (std::find(models.begin(), models.end(), name) == models.end()) {
+    throw Error("The model \"" + name +
+                "\" of this size field is not in Gmsh any more: make a new field.");
+  }
+  gmsh::set_current_model(name);
+}
+
+CurrentModel::~CurrentModel() {
+  try {
+    if (gmsh::current_model() != before_) {
+      gmsh::set_current_model(before_);
+    }
+  } catch (...) {
+    // Gmsh was finalized meanwhile: nothing is left to restore.
+  }
+}
+
+GmshState::~GmshState() {
+  try {
+    for (const auto& [name, value] : options_) {
+      gmsh::set_option(name, value);
+    }
+    std::vector<Entity> shown;
+    std::vector<Entity> hidden;
+    for (const auto& [entity, visible] : visibility_) {
+      (visible ? shown : hidden).push_back(entity);
+    }
+    gmsh::set_visible(shown, true);
+    gmsh::set_visible(hidden, false);
+  } catch (...) {
+    // Gmsh was finalized meanwhile: nothing is left to restore.
+  }
+}
+
+void GmshState::set_option(const std::string& name, double value) {
+  options_.emplace(name, gmsh::option(name));
+  gmsh::set_option(name, value);
+}
+
+double GmshState::user_option(const std::string& name) const {
+  const auto changed = options_.find(name);
+  return changed != options_.end() ? changed->second : gmsh::option(name);
+}
+
+void GmshState::show_only(const std::vector<Entity>& shown, const std::vector<Entity>& all) {
+  if (visibility_.empty()) {
+    for (const Entity& entity : all) {
+      visibility_.emplace_back(entity, gmsh::visible(entity));
+    }
+  }
+  gmsh::set_visible(all, false);
+  gmsh::set_visible(shown, true);
+}
+
+}  // namespace meshgrow

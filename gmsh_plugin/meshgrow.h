@@ -1,0 +1,107 @@
+#ifndef MESHGROW_H
+#define MESHGROW_H
+
+#include <stddef.h>
+
+/* The C interface of meshgrow: mesh sizes for Gmsh that grow from what is meshed already.
+ *
+ * Entities are passed as in Gmsh's own C API: arrays of dim, tag, dim, tag, … whose length `…_n`
+ * counts the ints. Sizes and coordinates are in model units. Functions that can fail return 0 on
+ * success and 1 on failure; meshgrow_last_error() then gives one sentence. Nothing is thrown.
+ *
+ * libgmsh is found at run time: the one loaded in the process, else the file named by the
+ * environment variable MESHGROW_GMSH_LIB, else the usual names. 4.8 or later is needed.
+ *
+ * Thread safety: as Gmsh itself, one thread at a time, except meshgrow_field_size,
+ * meshgrow_field_exact_size and meshgrow_field_answer on a field that is not being changed. */
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define MESHGROW_API __declspec(dllexport)
+#else
+#define MESHGROW_API __attribute__((visibility("default")))
+#endif
+
+typedef struct meshgrow_field meshgrow_field;
+
+/* "0.1.0" */
+MESHGROW_API const char* meshgrow_version(void);
+
+/* The sentence of the last failure in this thread; valid until the next call. */
+MESHGROW_API const char* meshgrow_last_error(void);
+
+/* Frees a text returned by this library. */
+MESHGROW_API void meshgrow_free(char* text);
+
+/* A size field of Gmsh's current model, without any size function; NULL on failure. Destroying it
+ * removes it from Gmsh. */
+MESHGROW_API meshgrow_field* meshgrow_field_create(void);
+MESHGROW_API void meshgrow_field_destroy(meshgrow_field* field);
+
+/* The mesh on the sources (curves, surfaces) grows into the attachments (curves, surfaces, volumes,
+ * with all that bounds them), each layer `growth_rate` >= 1 times the one before, up to
+ * `size_limit` > 0. `quad_sides` != 0 sizes a quadrilateral by its four sides, 0 by its two
+ * triangles, diagonal included. */
+MESHGROW_API int meshgrow_field_add_mesh(meshgrow_field* field, const int* sources,
+                                         size_t sources_n, const int* attach, size_t attach_n,
+                                         double growth_rate, double size_limit, int quad_sides);
+
+/* The size `size` > 0 on the sources (points, curves, surfaces, volumes) grows likewise. */
+MESHGROW_API int meshgrow_field_add_fixed(meshgrow_field* field, const int* sources,
+                                          size_t sources_n, const int* attach, size_t attach_n,
+                                          double size, double growth_rate, double size_limit);
+
+/* A size function by its one-line text:
+ * "mesh source Surface{7} attach Volume{2} growth 1.2 limit 2" */
+MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
+
+/* Options, before the field is used: "tolerance" (relative, of the background grid; 0.05), "threads"
+ * (that build grids; 0: all), "exact" (1: sizes by the tree, no grid; 0), "strict" (1: a mesh size
+ * function whose source has no mesh is an error; 0: a warning). */
+MESHGROW_API int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value);
+
+/* Reads the sources as they are meshed now and builds the grids. */
+MESHGROW_API int meshgrow_field_refresh(meshgrow_field* field);
+
+/* Registers the field as Gmsh's size callback (after a refresh), or takes it away. */
+MESHGROW_API int meshgrow_field_register(meshgrow_field* field);
+MESHGROW_API int meshgrow_field_unregister(meshgrow_field* field);
+
+/* Meshes the model up to dimension `dim` with Gmsh's own algorithms, sources first. What had a mesh
+ * before keeps it: node tags, coordinates to the bit, connectivity. */
+MESHGROW_API int meshgrow_field_generate(meshgrow_field* field, int dim);
+
+/* Sizes asked for on an entity at `points_n` points (three doubles each) into `sizes`; infinite where
+ * no function acts. From the grid, or exact without it. The first call reads the sources. */
+MESHGROW_API int meshgrow_field_size(meshgrow_field* field, int dim, int tag, const double* points,
+                                     size_t points_n, double* sizes);
+MESHGROW_API int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag,
+                                           const double* points, size_t points_n, double* sizes);
+
+/* What Gmsh is told when it proposes `proposed` itself: the smaller of the two. */
+MESHGROW_API double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x,
+                                          double y, double z, double proposed);
+
+/* Functions, groups and grids as text; NULL on failure. To be freed by meshgrow_free. */
+MESHGROW_API char* meshgrow_field_summary(meshgrow_field* field);
+
+/* The same as JSON: {"functions": […], "groups": [{"entities": …, "grid": …}, …]}. */
+MESHGROW_API char* meshgrow_field_summary_json(meshgrow_field* field);
+
+/* Gradation and quality of the current model's mesh of dimension `dim` (2 or 3) as JSON, restricted
+ * to `entities` unless there are none; against the sizes of `field` unless it is NULL. NULL on
+ * failure. To be freed by meshgrow_free. */
+MESHGROW_API char* meshgrow_report_json(int dim, const int* entities, size_t entities_n,
+                                        meshgrow_field* field);
+
+/* The table of several such reports: JSON array of {"name": …, "report": …}. */
+MESHGROW_API char* meshgrow_report_table(const char* reports_json);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

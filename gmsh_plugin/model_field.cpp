@@ -1,0 +1,145 @@
+#include "model_field.h"
+
+#include <numeric>
+
+#include "error.h"
+#include "geometry_sampler.h"
+#include "gmsh_api.h"
+#include "gmsh_state.h"
+#include "model_reader.h"
+#include "number_text.h"
+#include "ordered_mesher.h"
+#include "size_function_text.h"
+
+namespace meshgrow {
+
+namespace {
+
+Topology topology_of_current_model() {
+  gmsh::require_gmsh();
+  return read_topology();
+}
+
+/// Tells Gmsh's log of each further tenth of a grid, once it takes long enough to be worth a word.
+class GridProgress {
+ public:
+  void operator()(const std::string& what, double done) {
+    const int tenth = static_cast<int>(10.0 * done);
+    if (what != what_) {
+      what_ = what;
+      told_ = -1;
+    }
+    if (tenth > told_) {
+      told_ = tenth;
+      gmsh::log(what + ": " + std::to_string(10 * tenth) + " %");
+    }
+  }
+
+ private:
+  std::string what_;
+  int told_ = -1;
+};
+
+}  // namespace
+
+ModelField::ModelField() : field_(topology_of_current_model()) {
+  model_ = gmsh::current_model();
+  field_.options().progress = GridProgress();
+}
+
+std::size_t ModelField::add(SizeFunction function) {
+  sources_read_ = false;
+  return field_.add(std::move(function));
+}
+
+std::size_t ModelField::add(const std::string& text) {
+  return add(parse_size_function(text, field_.topology()));
+}
+
+void ModelField::read_sources(const std::vector<std::size_t>& functions) {
+  if (functions.empty()) {
+    return;
+  }
+  const NodeCoordinates nodes;
+  for (const std::size_t index : functions) {
+    const SizeFunction& function = field_.functions()[index];
+    std::vector<FacetedSource> sources;
+    for (const Entity& source : function.sources) {
+      const bool meshed = (source.dim == 1 || source.dim == 2) && gmsh::has_elements(source);
+      if (meshed) {
+        sources.push_back(read_entity_mesh(source, nodes));
+      } else if (function.kind == Kind::fixed) {
+        sources.push_back(sample_geometry(source, field_.topology(), function.start_size));
+      }
+    }
+    const DroppedFacets dropped = field_.set_sources(index, sources);
+    if (dropped.zero_size + dropped.not_finite > 0) {
+      gmsh::log(field_.function_name(index) + ": " +
+                    grouped_digits(dropped.zero_size + dropped.not_finite) +
+                    " elements of its sources have no size or no finite coordinates and are left "
+                    "out: check the mesh of " +
+                    entity_names(function.sources) + ".",
+                "warning");
+    }
+  }
+}
+
+void ModelField::report_unmeshed(std::size_t function, bool throw_if_strict) {
+  if (field_.functions()[function].kind != Kind::mesh) {
+    return;
+  }
+  std::vector<Entity> unmeshed;
+  for (const Entity& source : field_.functions()[function].sources) {
+    if (!gmsh::has_elements(source)) {
+      unmeshed.push_back(source);
+    }
+  }
+  if (unmeshed.empty()) {
+    return;
+  }
+  const std::string sentence =
+      field_.function_name(function) + ": " + entity_names(unmeshed) +
+      (unmeshed.size() == 1 ? " has no mesh" : " have no mesh") +
+      (field_.is_effective(function) ? ", so only its other sources act"
+                                     : ", so the function has no effect") +
+      ": mesh the source before what grows from it.";
+  if (strict_ && throw_if_strict) {
+    throw Error(sentence);
+  }
+  if (reported_.insert(function).second) {
+    gmsh::log(sentence, "warning");
+  }
+}
+
+void ModelField::refresh() {
+  const CurrentModel current(model_);
+  std::vector<std::size_t> all(field_.functions().size());
+  std::iota(all.begin(), all.end(), 0U);
+  read_sources(all);
+  reported_.clear();
+  for (const std::size_t function : all) {
+    report_unmeshed(function, true);
+  }
+  field_.build();
+  sources_read_ = true;
+}
+
+void ModelField::refresh_if_needed() {
+  if (!sources_read_) {
+    refresh();
+  }
+}
+
+void ModelField::register_callback() {
+  refresh();
+  const CurrentModel current(model_);
+  callback_.reset();
+  callback_ = std::make_unique<SizeCallback>(field_, model_);
+}
+
+void ModelField::generate(int dim) {
+  OrderedMesher(*this).generate(dim);
+  sources_read_ = true;
+}
+
+}  // namespace meshgrow

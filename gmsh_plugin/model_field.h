@@ -1,0 +1,67 @@
+#ifndef MESHGROW_MODEL_FIELD_H
+#define MESHGROW_MODEL_FIELD_H
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "size_callback.h"
+#include "size_field.h"
+
+namespace meshgrow {
+
+/// The size field of a Gmsh model: defines size functions, reads their sources out of the model, and
+/// gives Gmsh the sizes. Not thread-safe, as Gmsh is not; only `SizeField`'s own queries are.
+class ModelField {
+ public:
+  /// Of the current model. Throws Error without libgmsh, before gmsh.initialize(), with a Gmsh older
+  /// than 4.8 and for a model without entities.
+  ModelField();
+
+  std::size_t add(SizeFunction function);
+  /// Adds a function by its one-line text (size_function_text.h).
+  std::size_t add(const std::string& text);
+
+  const std::string& model() const { return model_; }
+  SizeField& field() { return field_; }
+  const SizeField& field() const { return field_; }
+
+  /// Error instead of a warning when a mesh size function has no effect because a source has no mesh.
+  void set_strict(bool strict) { strict_ = strict; }
+
+  /// Reads all sources as they are now and builds trees and grids. Warns of (with `strict`: throws
+  /// for) mesh size functions without a meshed source.
+  void refresh();
+
+  /// `refresh` unless sources were read since the last function was added.
+  void refresh_if_needed();
+
+  /// Registers the field as Gmsh's size callback, sources read as they are now.
+  void register_callback();
+  void unregister_callback() { callback_.reset(); }
+  bool is_registered() const { return callback_ != nullptr; }
+
+  /// Meshes the model up to `dim` with Gmsh, sources first; whatever has a mesh keeps it. See
+  /// ordered_mesher.h.
+  void generate(int dim);
+
+ private:
+  friend class OrderedMesher;
+
+  /// Reads the sources of the functions that act on these entities, as far as they changed.
+  void read_sources(const std::vector<std::size_t>& functions);
+  void warn_or_throw(const std::string& sentence) const;
+  void report_unmeshed(std::size_t function, bool throw_if_strict);
+
+  std::string model_;
+  SizeField field_;
+  bool strict_ = false;
+  bool sources_read_ = false;
+  std::set<std::size_t> reported_;
+  std::unique_ptr<SizeCallback> callback_;
+};
+
+}  // namespace meshgrow
+
+#endif

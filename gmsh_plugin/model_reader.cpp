@@ -1,0 +1,159 @@
+#include "model_reader.h"
+
+#include <algorithm>
+#include <map>
+
+#include "error.h"
+
+namespace meshgrow {
+
+namespace {
+
+[[noreturn]] void refuse_type(const Entity& entity, const gmsh::ElementType& type) {
+  throw Error(entity_name(entity) + " has elements of type '" + type.name +
+              "', which meshgrow does not read: use lines, triangles, quadrilaterals, tetrahedra, "
+              "hexahedra, prisms or pyramids.");
+}
+
+ElementShape report_shape(ElementFamily family, const Entity& entity,
+                          const gmsh::ElementType& type) {
+  switch (family) {
+    case ElementFamily::triangle:
+      return ElementShape::triangle;
+    case ElementFamily::quad:
+      return ElementShape::quad;
+    case ElementFamily::tetrahedron:
+      return ElementShape::tetrahedron;
+    case ElementFamily::hexahedron:
+      return ElementShape::hexahedron;
+    case ElementFamily::prism:
+      return ElementShape::prism;
+    case ElementFamily::pyramid:
+      return ElementShape::pyramid;
+    default:
+      refuse_type(entity, type);
+  }
+}
+
+}  // namespace
+
+Topology read_topology() {
+  Topology topology;
+  const std::vector<Entity> entities = gmsh::entities();
+  if (entities.empty()) {
+    throw Error("The current Gmsh model has no entities: open or build a model first.");
+  }
+  for (const Entity& entity : entities) {
+    std::vector<Entity> lower = entity.dim > 0 ? gmsh::boundary(entity) : std::vector<Entity>();
+    if (entity.dim >= 2) {
+      const std::vector<Entity> inside = gmsh::embedded(entity);
+      lower.insert(lower.end(), inside.begin(), inside.end());
+    }
+    std::sort(lower.begin(), lower.end());
+    lower.erase(std::unique(lower.begin(), lower.end()), lower.end());
+    topology.add_entity(entity, std::move(lower), gmsh::bounding_box(entity));
+  }
+  for (const Entity& group : gmsh::physical_groups()) {
+    topology.add_physical_group({group.dim, group.tag, gmsh::physical_name(group),
+                                 gmsh::entities_of_physical_group(group)});
+  }
+  return topology;
+}
+
+NodeCoordinates::NodeCoordinates() {
+  const gmsh::Nodes nodes = gmsh::all_nodes();
+  coordinates_.reserve(nodes.tags.size());
+  index_of_.reserve(nodes.tags.size());
+  for (std::size_t i = 0; i < nodes.tags.size(); ++i) {
+    index_of_.emplace(nodes.tags[i], i);
+    coordinates_.emplace_back(nodes.coordinates[3 * i], nodes.coordinates[3 * i + 1],
+                              nodes.coordinates[3 * i + 2]);
+  }
+}
+
+std::size_t NodeCoordinates::index(std::size_t tag, const Entity& asked_by) const {
+  const auto found = index_of_.find(tag);
+  if (found == index_of_.end()) {
+    throw Error(entity_name(asked_by) + " has an element with node " + std::to_string(tag) +
+                ", which does not exist: repair its mesh.");
+  }
+  return found->second;
+}
+
+const Vec3& NodeCoordinates::at(std::size_t tag, const Entity& asked_by) const {
+  return coordinates_[index(tag, asked_by)];
+}
+
+ElementFamily element_family(const gmsh::ElementType& type) {
+  // The number of corners alone would take a trihedron for a tetrahedron.
+  static const std::map<std::string, ElementFamily> families = {
+      {"Line", ElementFamily::line},
+      {"Triangle", ElementFamily::triangle},
+      {"Quadrilateral", ElementFamily::quad},
+      {"Quadrangle", ElementFamily::quad},
+      {"Tetrahedron", ElementFamily::tetrahedron},
+      {"Hexahedron", ElementFamily::hexahedron},
+      {"Prism", ElementFamily::prism},
+      {"Pyramid", ElementFamily::pyramid}};
+  const auto found = families.find(type.name.substr(0, type.name.find(' ')));
+  return found == families.end() ? ElementFamily::unknown : found->second;
+}
+
+FacetedSource read_entity_mesh(const Entity& entity, const NodeCoordinates& nodes) {
+  FacetedSource source;
+  source.entity = entity;
+  for (const gmsh::Elements& block : gmsh::elements(entity)) {
+    const gmsh::ElementType type = gmsh::element_type(block.type);
+    const ElementFamily family = element_family(type);
+    const auto corner = [&](std::size_t first, std::size_t i) {
+      return nodes.at(block.node_tags[first + i], entity);
+    };
+    const auto step = static_cast<std::size_t>(type.node_count);
+    for (std::size_t first = 0; first + step <= block.node_tags.size(); first += step) {
+      if (family == ElementFamily::line) {
+        source.segments.push_back({corner(first, 0), corner(first, 1)});
+      } else if (family == ElementFamily::triangle) {
+        source.triangles.push_back({corner(first, 0), corner(first, 1), corner(first, 2)});
+      } else if (family == ElementFamily::quad) {
+        source.quads.push_back(
+            {corner(first, 0), corner(first, 1), corner(first, 2), corner(first, 3)});
+      } else {
+        refuse_type(entity, type);
+      }
+    }
+  }
+  return source;
+}
+
+ReportMesh read_report_mesh(int dim, std::vector<Entity> entities) {
+  if (entities.empty()) {
+    for (const Entity& entity : gmsh::entities()) {
+      if (entity.dim == dim) {
+        entities.push_back(entity);
+      }
+    }
+  }
+  const NodeCoordinates nodes;
+  ReportMesh mesh;
+  mesh.nodes = nodes.coordinates();
+  for (const Entity& entity : entities) {
+    for (const gmsh::Elements& block : gmsh::elements(entity)) {
+      const gmsh::ElementType type = gmsh::element_type(block.type);
+      const ElementShape shape = report_shape(element_family(type), entity, type);
+      const auto step = static_cast<std::size_t>(type.node_count);
+      for (std::size_t first = 0; first + step <= block.node_tags.size(); first += step) {
+        ReportElement element;
+        element.shape = shape;
+        element.entity = entity;
+        for (int i = 0; i < corner_count(shape); ++i) {
+          element.corners[i] =
+              static_cast<std::uint32_t>(nodes.index(block.node_tags[first + i], entity));
+        }
+        mesh.elements.push_back(element);
+      }
+    }
+  }
+  return mesh;
+}
+
+}  // namespace meshgrow

@@ -1,0 +1,177 @@
+#include "ordered_mesher.h"
+
+#include <algorithm>
+
+#include "error.h"
+#include "gmsh_api.h"
+
+namespace meshgrow {
+
+OrderedMesher::OrderedMesher(ModelField& model_field)
+    : model_field_(model_field),
+      field_(model_field.field()),
+      current_(model_field.model()),
+      all_(field_.topology().entities()),
+      premeshed_(field_.topology()) {}
+
+void OrderedMesher::check_model() const {
+  std::vector<Entity> now = gmsh::entities();
+  std::sort(now.begin(), now.end());
+  if (now != all_) {
+    throw Error("The model has other entities than when this size field was made: make a new field "
+                "after changing the geometry.");
+  }
+}
+
+void OrderedMesher::check_options() const {
+  if (gmsh::option("Mesh.SubdivisionAlgorithm") != 0.0) {
+    throw Error("Mesh.SubdivisionAlgorithm would split the premeshed elements too: set it to 0 and "
+                "call refine() after meshing.");
+  }
+}
+
+void OrderedMesher::generate(int dim) {
+  if (dim < 1 || dim > 3) {
+    throw Error("Cannot mesh dimension " + std::to_string(dim) + ": give 1, 2 or 3.");
+  }
+  check_model();
+  check_options();
+  const double element_order = gmsh::option("Mesh.ElementOrder");
+  state_.set_option("Mesh.MeshOnlyVisible", 1.0);
+  state_.set_option("Mesh.MeshOnlyEmpty", 0.0);
+  state_.set_option("Mesh.Renumber", 0.0);
+  state_.set_option("Mesh.ElementOrder", 1.0);
+
+  std::vector<Entity> sources;
+  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
+    const SizeFunction& function = field_.functions()[i];
+    stale_.insert(i);
+    if (function.kind == Kind::mesh) {
+      sources.insert(sources.end(), function.sources.begin(), function.sources.end());
+    }
+  }
+  model_field_.reported_.clear();
+  {
+    const SizeCallback callback(field_, model_field_.model());
+    try {
+      curves_follow_ = true;
+      mesh(field_.topology().closure(sources), dim);
+      curves_follow_ = false;
+      mesh({all_.begin(), all_.end()}, dim);
+      premeshed_.put_back_changed();
+    } catch (...) {
+      premeshed_.put_back_missing();
+      throw;
+    }
+  }
+  if (model_field_.is_registered()) {
+    model_field_.callback_ = std::make_unique<SizeCallback>(field_, model_field_.model());
+  }
+  if (element_order > 1.0) {
+    gmsh::set_order(static_cast<int>(element_order));
+  }
+}
+
+bool OrderedMesher::acts_effectively(const Entity& entity) const {
+  const std::vector<std::size_t> functions = field_.functions_on(entity);
+  return std::any_of(functions.begin(), functions.end(),
+                     [this](std::size_t function) { return field_.is_effective(function); });
+}
+
+void OrderedMesher::mesh(const std::set<Entity>& entities, int dim) {
+  for (int pass_dim = 1; pass_dim <= dim; ++pass_dim) {
+    std::vector<Entity> open;
+    for (const Entity& entity : entities) {
+      if (entity.dim == pass_dim && !premeshed_.contains(entity) && done_.count(entity) == 0) {
+        open.push_back(entity);
+      }
+    }
+    if (open.empty()) {
+      continue;
+    }
+    read_new_sources();
+    const auto middle = std::stable_partition(
+        open.begin(), open.end(), [this](const Entity& e) { return acts_effectively(e); });
+    pass({open.begin(), middle}, true);
+    pass({middle, open.end()}, false);
+  }
+}
+
+void OrderedMesher::read_new_sources() {
+  model_field_.read_sources({stale_.begin(), stale_.end()});
+  stale_.clear();
+}
+
+void OrderedMesher::report_unmeshed_sources(const std::vector<Entity>& entities) {
+  std::set<std::size_t> functions;
+  for (const Entity& entity : entities) {
+    for (const std::size_t function : field_.functions_on(entity)) {
+      // A source's own boundary is meshed before it, and other sources of the function are not
+      // asked to wait for it.
+      const std::set<Entity> own =
+          field_.topology().closure(field_.functions()[function].sources);
+      if (own.count(entity) == 0) {
+        functions.insert(function);
+      }
+    }
+  }
+  for (const std::size_t function : functions) {
+    model_field_.report_unmeshed(function, true);
+  }
+}
+
+void OrderedMesher::pass(const std::vector<Entity>& entities, bool attached) {
+  if (entities.empty()) {
+    return;
+  }
+  report_unmeshed_sources(entities);
+  if (attached) {
+    field_.build(entities);
+  }
+  const int dim = entities.front().dim;
+  const std::string name = "pass " + std::to_string(++pass_count_) + ": " + entity_names(entities) +
+                           (attached ? ", sizes from the field" : ", Gmsh's own sizes");
+  gmsh::log("Meshgrow " + name);
+  constexpr const char* extend = "Mesh.MeshSizeExtendFromBoundary";
+  state_.set_option(extend, attached ? 0.0 : state_.user_option(extend));
+  state_.show_only(entities, all_);
+  try {
+    gmsh::generate(dim);
+  } catch (const Error& error) {
+    throw Error("Meshing stopped in " + name + ": " + error.what());
+  }
+  premeshed_.put_back_missing();
+  check_result(entities, name);
+  done_.insert(entities.begin(), entities.end());
+  if (dim == 2 && curves_follow_) {
+    premeshed_.keep(entities);
+  }
+  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
+    const std::vector<Entity>& sources = field_.functions()[i].sources;
+    for (const Entity& source : sources) {
+      if (field_.functions()[i].kind == Kind::mesh &&
+          std::count(entities.begin(), entities.end(), source) > 0) {
+        stale_.insert(i);
+      }
+    }
+  }
+}
+
+void OrderedMesher::check_result(const std::vector<Entity>& entities,
+                                 const std::string& pass_name) const {
+  std::vector<Entity> empty;
+  for (const Entity& entity : entities) {
+    // Curves of zero length (poles, tips) stay without elements rightly.
+    if (entity.dim > 1 && !gmsh::has_elements(entity)) {
+      empty.push_back(entity);
+    }
+  }
+  if (!empty.empty()) {
+    const std::string reason = gmsh::last_error();
+    throw Error("Gmsh could not mesh " + entity_names(empty) + " in " + pass_name +
+                (reason.empty() ? "" : " (" + reason + ")") +
+                ": repair the geometry or change sizes or algorithm; the rest is kept.");
+  }
+}
+
+}  // namespace meshgrow

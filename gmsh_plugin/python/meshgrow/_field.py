@@ -1,0 +1,116 @@
+"""The size field of a Gmsh model."""
+
+import json
+
+import numpy as np
+
+from ._library import check, dim_tags, doubles, lib, points_array, take_text
+
+
+class SizeField:
+    """Mesh sizes of Gmsh's current model, from its size functions.
+
+    Entities are lists of ``(dim, tag)`` as in gmsh. Lengths are in model units. Raises
+    :class:`meshgrow.Error` with one sentence when something is wrong.
+
+    tolerance
+        relative tolerance of the background grids: a size is at most ``1 + tolerance`` times exact.
+    evaluator
+        ``"grid"`` interpolates in background grids, ``"exact"`` asks the tree of facets each time.
+    strict
+        a mesh size function whose source has no mesh is an error instead of a warning.
+    threads
+        that build grids; 0 takes all.
+    """
+
+    def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0):
+        self._handle = lib.meshgrow_field_create()
+        check(not self._handle)
+        if evaluator not in ("grid", "exact"):
+            raise ValueError('evaluator must be "grid" or "exact", not %r' % (evaluator,))
+        self._set("tolerance", tolerance)
+        self._set("exact", evaluator == "exact")
+        self._set("strict", strict)
+        self._set("threads", threads)
+
+    def __del__(self):
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            lib.meshgrow_field_destroy(handle)
+
+    def _set(self, name, value):
+        check(lib.meshgrow_field_set_option(self._handle, name.encode(), float(value)))
+
+    def add_mesh(self, sources, attach, growth_rate=1.2, size_limit=None, quad_size="triangles"):
+        """The mesh on the sources (curves, surfaces) grows into the attachments.
+
+        Each layer of elements is ``growth_rate`` (>= 1) times the one before, up to ``size_limit``
+        (> 0). Acts on all that bounds or is embedded in the attachments as well. ``quad_size`` is
+        ``"triangles"`` (a quadrilateral by its two triangles, diagonal included) or ``"sides"``.
+        """
+        if quad_size not in ("triangles", "sides"):
+            raise ValueError('quad_size must be "triangles" or "sides", not %r' % (quad_size,))
+        check(lib.meshgrow_field_add_mesh(
+            self._handle, *dim_tags(sources), *dim_tags(attach), growth_rate, _limit(size_limit),
+            int(quad_size == "sides")))
+
+    def add_fixed(self, sources, attach, size, growth_rate=1.2, size_limit=None):
+        """The size ``size`` (> 0) on the sources (points to volumes) grows into the attachments."""
+        check(lib.meshgrow_field_add_fixed(
+            self._handle, *dim_tags(sources), *dim_tags(attach), size, growth_rate,
+            _limit(size_limit)))
+
+    def add(self, text):
+        """A size function by its line of text, the same as on the command line:
+        ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``."""
+        check(lib.meshgrow_field_add(self._handle, text.encode()))
+
+    def generate(self, dim=3):
+        """Meshes up to dimension ``dim`` with Gmsh's own algorithms, sources first.
+
+        What had a mesh before keeps it: node tags, coordinates to the bit, connectivity.
+        """
+        check(lib.meshgrow_field_generate(self._handle, int(dim)))
+
+    def register(self):
+        """Reads the sources as they are meshed now and becomes Gmsh's size callback.
+
+        Only the callback: the caller meshes, sources in the order in which Gmsh meshes them.
+        """
+        check(lib.meshgrow_field_register(self._handle))
+
+    def unregister(self):
+        """Takes the size callback away again."""
+        check(lib.meshgrow_field_unregister(self._handle))
+
+    def refresh(self):
+        """Reads the sources as they are meshed now and builds the grids."""
+        check(lib.meshgrow_field_refresh(self._handle))
+
+    def size(self, dim, tag, points):
+        """Sizes asked for on an entity at points (n, 3) -> (n,) float64; inf where none acts."""
+        return self._sizes(lib.meshgrow_field_size, dim, tag, points)
+
+    def exact_size(self, dim, tag, points):
+        """The same without the grid: the minimum over all facets of the sources."""
+        return self._sizes(lib.meshgrow_field_exact_size, dim, tag, points)
+
+    def _sizes(self, function, dim, tag, points):
+        array = points_array(points)
+        result = np.empty(len(array))
+        check(function(self._handle, dim, tag, doubles(array), len(array), doubles(result)))
+        return result
+
+    def summary(self):
+        """Functions, groups and grids as text for people."""
+        return take_text(lib.meshgrow_field_summary(self._handle))
+
+    def statistics(self):
+        """The same as a dictionary: ``functions`` and ``groups``, each a list."""
+        return json.loads(take_text(lib.meshgrow_field_summary_json(self._handle)))
+
+
+def _limit(size_limit):
+    if size_limit is None:
+        raise ValueError("give size_limit, the largest size that the function asks for")
+    return size_limit

@@ -1,0 +1,114 @@
+"""The shared library behind the package, and what passes its C border."""
+
+import ctypes
+import os
+
+import numpy as np
+
+_DOUBLE = ctypes.c_double
+_SIZE = ctypes.c_size_t
+_INT = ctypes.c_int
+_INTS = ctypes.POINTER(_INT)
+_DOUBLES = ctypes.POINTER(_DOUBLE)
+_FIELD = ctypes.c_void_p
+_TEXT = ctypes.c_void_p  # a char* that must be freed, so not c_char_p
+
+_SIGNATURES = {
+    "meshgrow_version": (ctypes.c_char_p, []),
+    "meshgrow_last_error": (ctypes.c_char_p, []),
+    "meshgrow_free": (None, [_TEXT]),
+    "meshgrow_field_create": (_FIELD, []),
+    "meshgrow_field_destroy": (None, [_FIELD]),
+    "meshgrow_field_add_mesh": (
+        _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _INT]),
+    "meshgrow_field_add_fixed": (
+        _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "meshgrow_field_add": (_INT, [_FIELD, ctypes.c_char_p]),
+    "meshgrow_field_set_option": (_INT, [_FIELD, ctypes.c_char_p, _DOUBLE]),
+    "meshgrow_field_refresh": (_INT, [_FIELD]),
+    "meshgrow_field_register": (_INT, [_FIELD]),
+    "meshgrow_field_unregister": (_INT, [_FIELD]),
+    "meshgrow_field_generate": (_INT, [_FIELD, _INT]),
+    "meshgrow_field_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
+    "meshgrow_field_exact_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
+    "meshgrow_field_answer": (
+        _DOUBLE, [_FIELD, _INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "meshgrow_field_summary": (_TEXT, [_FIELD]),
+    "meshgrow_field_summary_json": (_TEXT, [_FIELD]),
+    "meshgrow_report_json": (_TEXT, [_INT, _INTS, _SIZE, _FIELD]),
+    "meshgrow_report_table": (_TEXT, [ctypes.c_char_p]),
+}
+
+
+class Error(RuntimeError):
+    """What meshgrow raises: one sentence that names the entity and the remedy."""
+
+
+def _find_library():
+    """The library beside the package (installed), in the build tree, or named by MESHGROW_LIB."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    named = os.environ.get("MESHGROW_LIB")
+    candidates = [named] if named else [
+        os.path.join(here, "libmeshgrow.so"),
+        # Lexically, since the package is a link to the sources in the build tree.
+        os.path.normpath(os.path.join(here, "..", "..", "lib", "libmeshgrow.so")),
+    ]
+    for path in candidates:
+        if os.path.exists(path):
+            return path
+    raise ImportError("libmeshgrow.so was not found (looked at %s): build meshgrow first, or set "
+                      "MESHGROW_LIB to its path." % ", ".join(candidates))
+
+
+def _load():
+    library = ctypes.CDLL(_find_library())
+    for name, (result, arguments) in _SIGNATURES.items():
+        function = getattr(library, name)
+        function.restype = result
+        function.argtypes = arguments
+    return library
+
+
+lib = _load()
+
+
+def version():
+    """Version of the library, such as "0.1.0"."""
+    return lib.meshgrow_version().decode()
+
+
+def check(failed):
+    """Raises the library's last error if a call failed."""
+    if failed:
+        raise Error(lib.meshgrow_last_error().decode())
+
+
+def take_text(text):
+    """A returned text as str, its memory freed; raises the last error if there is none."""
+    if not text:
+        check(True)
+    try:
+        return ctypes.string_at(text).decode()
+    finally:
+        lib.meshgrow_free(text)
+
+
+def dim_tags(entities):
+    """A list of (dim, tag) as the C array of ints and its length."""
+    flat = [int(value) for entity in entities for value in entity]
+    return (_INT * len(flat))(*flat), len(flat)
+
+
+def doubles(array):
+    """Pointer to the data of a contiguous float64 array."""
+    return array.ctypes.data_as(_DOUBLES)
+
+
+def points_array(points):
+    """Points as a contiguous float64 array of shape (n, 3)."""
+    array = np.ascontiguousarray(points, dtype=np.float64)
+    if array.ndim == 1:
+        array = array.reshape(1, -1)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError("points must have the shape (n, 3), not %s" % (array.shape,))
+    return array
