@@ -1,9 +1,11 @@
 #include "ordered_mesher.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "error.h"
 #include "gmsh_api.h"
+#include "volume_nesting.h"
 
 namespace meshgrow {
 
@@ -90,10 +92,20 @@ void OrderedMesher::mesh(const std::set<Entity>& entities, int dim) {
       continue;
     }
     read_new_sources();
-    const auto middle = std::stable_partition(
-        open.begin(), open.end(), [this](const Entity& e) { return acts_effectively(e); });
-    pass({open.begin(), middle}, true);
-    pass({middle, open.end()}, false);
+    std::vector<Entity> attached;
+    std::vector<Entity> others;
+    std::partition_copy(open.begin(), open.end(), std::back_inserter(attached),
+                        std::back_inserter(others),
+                        [this](const Entity& e) { return acts_effectively(e); });
+    if (pass_dim < 3) {
+      pass(attached, true);
+      pass(others, false);
+      continue;
+    }
+    const std::set<Entity> attached_set(attached.begin(), attached.end());
+    for (const auto& volumes : volume_passes(open, attached_set, field_.topology())) {
+      pass(volumes, attached_set.count(volumes.front()) > 0);
+    }
   }
 }
 
