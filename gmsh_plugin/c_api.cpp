@@ -247,6 +247,18 @@ int meshgrow_field_set_option(meshgrow_field* field, const char* name, double va
   });
 }
 
+int meshgrow_field_set_progress(meshgrow_field* field,
+                                void (*listener)(const char* line, void* data), void* data) {
+  return guarded(1, [&] {
+    meshgrow::ModelField::ProgressListener call;
+    if (listener != nullptr) {
+      call = [listener, data](const std::string& line) { listener(line.c_str(), data); };
+    }
+    deref(field).set_progress_listener(call);
+    return 0;
+  });
+}
+
 int meshgrow_field_refresh(meshgrow_field* field) {
   return guarded(1, [&] {
     deref(field).refresh();

@@ -20,31 +20,33 @@ Topology topology_of_current_model() {
   return read_topology();
 }
 
-/// Tells Gmsh's log of each further tenth of a grid, once it takes long enough to be worth a word.
-class GridProgress {
- public:
-  void operator()(const std::string& what, double done) {
-    const int tenth = static_cast<int>(10.0 * done);
-    if (what != what_) {
-      what_ = what;
-      told_ = -1;
-    }
-    if (tenth > told_) {
-      told_ = tenth;
-      gmsh::log(what + ": " + std::to_string(10 * tenth) + " %");
-    }
-  }
-
- private:
-  std::string what_;
-  int told_ = -1;
-};
-
 }  // namespace
 
 ModelField::ModelField() : field_(topology_of_current_model()) {
   model_ = gmsh::current_model();
-  field_.options().progress = GridProgress();
+  field_.options().progress = [this](const std::string& what, double done) {
+    tell_grid(what, done);
+  };
+}
+
+void ModelField::tell(const std::string& line) const {
+  if (listener_) {
+    listener_(line);
+  } else {
+    gmsh::log("Meshgrow: " + line);
+  }
+}
+
+void ModelField::tell_grid(const std::string& what, double done) {
+  const int tenths = static_cast<int>(10.0 * done);
+  if (what != grid_told_of_ || tenths < tenths_told_) {
+    grid_told_of_ = what;
+    tenths_told_ = 0;
+  }
+  if (tenths > tenths_told_) {
+    tenths_told_ = tenths;
+    tell(what + ": " + std::to_string(10 * tenths) + " %");
+  }
 }
 
 std::size_t ModelField::add(SizeFunction function) {

@@ -1,6 +1,7 @@
 #ifndef MESHGROW_MODEL_FIELD_H
 #define MESHGROW_MODEL_FIELD_H
 
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -30,6 +31,12 @@ class ModelField {
   /// Error instead of a warning when a mesh size function has no effect because a source has no mesh.
   void set_strict(bool strict) { strict_ = strict; }
 
+  /// Who is told of progress, a line at a time: passes, and each further tenth of a grid. Without a
+  /// listener, Gmsh's log (level info).
+  using ProgressListener = std::function<void(const std::string&)>;
+  void set_progress_listener(ProgressListener listener) { listener_ = std::move(listener); }
+  void tell(const std::string& line) const;
+
   /// Reads all sources as they are now and builds trees and grids. Warns of (with `strict`: throws
   /// for) mesh size functions without a meshed source.
   void refresh();
@@ -54,11 +61,16 @@ class ModelField {
   void warn_or_throw(const std::string& sentence) const;
   void report_unmeshed(std::size_t function, bool throw_if_strict);
 
+  void tell_grid(const std::string& what, double done);
+
   std::string model_;
   SizeField field_;
   bool strict_ = false;
   bool sources_read_ = false;
   std::set<std::size_t> reported_;
+  ProgressListener listener_;
+  std::string grid_told_of_;
+  int tenths_told_ = 0;
   std::unique_ptr<SizeCallback> callback_;
 };
 

@@ -141,9 +141,10 @@ void OrderedMesher::pass(const std::vector<Entity>& entities, bool attached) {
     field_.build(entities);
   }
   const int dim = entities.front().dim;
-  const std::string name = "pass " + std::to_string(++pass_count_) + ": " + entity_names(entities) +
-                           (attached ? ", sizes from the field" : ", Gmsh's own sizes");
-  gmsh::log("Meshgrow " + name);
+  const std::string name = "pass " + std::to_string(++pass_count_) + " (" +
+                           entity_names(entities, 3) +
+                           (attached ? "; sizes from the field)" : "; Gmsh's own sizes)");
+  model_field_.tell("Meshing, " + name);
   constexpr const char* extend = "Mesh.MeshSizeExtendFromBoundary";
   state_.set_option(extend, attached ? 0.0 : state_.user_option(extend));
   state_.show_only(entities, all_);

@@ -14,7 +14,7 @@ namespace meshgrow {
 struct GridOptions {
   /// Relative tolerance t: the grid's size is at most (1 + t) times the exact one, everywhere.
   double tolerance = 0.05;
-  /// OpenMP threads that build; 0 takes OpenMP's default. The result does not depend on it.
+  /// OpenMP threads that build; 0: OMP_NUM_THREADS, else all processors. The result does not depend on it.
   int threads = 0;
   /// A cell with at most so many facets left may keep them and answer from them.
   int facets_per_exact_leaf = 16;

@@ -24,7 +24,7 @@ enum class Evaluator {
 struct FieldOptions {
   double tolerance = 0.05;  ///< of the background grids, relative
   Evaluator evaluator = Evaluator::grid;
-  int threads = 0;  ///< that build grids; 0: OpenMP's default
+  int threads = 0;  ///< that build grids; 0: OMP_NUM_THREADS, else all processors
   /// Called while a grid is built, from the building thread only: what is built, finished fraction.
   std::function<void(const std::string&, double)> progress;
 };

@@ -51,11 +51,19 @@ class Parser {
     return function;
   }
 
+  std::vector<Entity> parse_only_entities() {
+    std::vector<Entity> entities;
+    parse_selections(entities);
+    skip_space();
+    require(position_ == text_.size(), "',' or the end");
+    return entities;
+  }
+
  private:
   [[noreturn]] void fail(const std::string& expected) const {
     const std::string found =
         position_ < text_.size() ? "'" + text_.substr(position_, 12) + "'" : "the end";
-    throw Error("Size function \"" + text_ + "\": expected " + expected + " at position " +
+    throw Error("\"" + text_ + "\": expected " + expected + " at position " +
                 std::to_string(position_ + 1) + ", found " + found + ".");
   }
 
@@ -185,7 +193,7 @@ class Parser {
     const int first = parse_tag();
     if (!accept(':')) {
       if (!topology_.contains({dim, first})) {
-        throw Error("Size function \"" + text_ + "\": " + entity_name({dim, first}) +
+        throw Error("\"" + text_ + "\": " + entity_name({dim, first}) +
                     " is not in the model: check dimension and tag.");
       }
       entities.push_back({dim, first});
@@ -235,7 +243,7 @@ class Parser {
       }
     }
     if (!found) {
-      throw Error("Size function \"" + text_ + "\": the model has no Physical " +
+      throw Error("\"" + text_ + "\": the model has no Physical " +
                   dimension_name(dim) + " \"" + name + "\": check its name and dimension.");
     }
   }
@@ -249,6 +257,10 @@ class Parser {
 
 SizeFunction parse_size_function(const std::string& text, const Topology& topology) {
   return Parser(text, topology).parse();
+}
+
+std::vector<Entity> parse_entities(const std::string& text, const Topology& topology) {
+  return Parser(text, topology).parse_only_entities();
 }
 
 }  // namespace meshgrow

@@ -2,6 +2,7 @@
 #define MESHGROW_SIZE_FUNCTION_TEXT_H
 
 #include <string>
+#include <vector>
 
 #include "size_function.h"
 #include "topology.h"
@@ -20,6 +21,9 @@ namespace meshgrow {
 /// Throws Error that tells the position (counted from 1) and what was expected there, and for
 /// entities or physical groups that are not in the model. Thread-safe.
 SizeFunction parse_size_function(const std::string& text, const Topology& topology);
+
+/// Reads entities alone, such as `Volume{2}, Physical Surface{"inlet"}`; sorted, each once.
+std::vector<Entity> parse_entities(const std::string& text, const Topology& topology);
 
 }  // namespace meshgrow
 

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 
-from ._library import check, dim_tags, doubles, lib, points_array, take_text
+from ._library import PROGRESS_LISTENER, check, dim_tags, doubles, lib, points_array, take_text
 
 
 class SizeField:
@@ -21,9 +21,12 @@ class SizeField:
         a mesh size function whose source has no mesh is an error instead of a warning.
     threads
         that build grids; 0 takes all.
+    progress
+        called with each line of progress (a str), for example ``print``; None: Gmsh's log.
     """
 
-    def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0):
+    def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0,
+                 progress=None):
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
         if evaluator not in ("grid", "exact"):
@@ -32,6 +35,10 @@ class SizeField:
         self._set("exact", evaluator == "exact")
         self._set("strict", strict)
         self._set("threads", threads)
+        if progress is not None:
+            # Kept as long as the field, which calls it.
+            self._listener = PROGRESS_LISTENER(lambda line, _: progress(line.decode()))
+            check(lib.meshgrow_field_set_progress(self._handle, self._listener, None))
 
     def __del__(self):
         handle, self._handle = getattr(self, "_handle", None), None

@@ -13,6 +13,8 @@ _DOUBLES = ctypes.POINTER(_DOUBLE)
 _FIELD = ctypes.c_void_p
 _TEXT = ctypes.c_void_p  # a char* that must be freed, so not c_char_p
 
+PROGRESS_LISTENER = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_void_p)
+
 _SIGNATURES = {
     "meshgrow_version": (ctypes.c_char_p, []),
     "meshgrow_last_error": (ctypes.c_char_p, []),
@@ -25,6 +27,7 @@ _SIGNATURES = {
         _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "meshgrow_field_add": (_INT, [_FIELD, ctypes.c_char_p]),
     "meshgrow_field_set_option": (_INT, [_FIELD, ctypes.c_char_p, _DOUBLE]),
+    "meshgrow_field_set_progress": (_INT, [_FIELD, PROGRESS_LISTENER, ctypes.c_void_p]),
     "meshgrow_field_refresh": (_INT, [_FIELD]),
     "meshgrow_field_register": (_INT, [_FIELD]),
     "meshgrow_field_unregister": (_INT, [_FIELD]),

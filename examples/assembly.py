@@ -1,0 +1,103 @@
+"""A real assembly: bolts meshed finely first, then the plates grow from the faces they share.
+
+as1-tu-203.stp (Gmsh's documentation) has 18 volumes: a plate, two brackets, a rod, bolts and nuts.
+Fragmented, they share faces. The bolts get a fine fixed size. The plate and the brackets, meshed
+later, share the bolts' faces: a mesh size function on those carries their fine mesh into the plates.
+"""
+
+import gzip
+import os
+import sys
+
+import gmsh
+import meshgrow
+
+import example_tools as tools
+
+COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
+BOLT_SIZE = 1.5 * COARSE  # millimetres
+GROWTH_RATE = 1.2
+SIZE_LIMIT = 15.0
+
+MODEL = "as1-tu-203.stp"
+PLACES = ("/usr/share/doc/gmsh-doc/doc/gmsh/demos/api/" + MODEL + ".gz",
+          os.path.join(sys.prefix, "share/doc/gmsh/examples/api", MODEL))
+
+
+def find_model():
+    """Path of the unpacked STEP file, from Debian's gmsh-doc or the PyPI wheel's examples."""
+    for place in PLACES:
+        if os.path.exists(place) and place.endswith(".gz"):
+            path = os.path.join(tools.OUT, MODEL)
+            with gzip.open(place) as packed, open(path, "wb") as plain:
+                plain.write(packed.read())
+            return path
+        if os.path.exists(place):
+            return place
+    sys.exit("error: %s was not found: install the Debian package gmsh-doc." % MODEL)
+
+
+def build_geometry():
+    """Imports and fragments; returns the volumes (plates, bolts)."""
+    gmsh.model.occ.importShapes(find_model())
+    gmsh.model.occ.synchronize()
+    names = {entity: gmsh.model.getEntityName(*entity) for entity in gmsh.model.getEntities(3)}
+    gmsh.model.occ.fragment(gmsh.model.getEntities(3), [])
+    gmsh.model.occ.synchronize()
+    # The volumes do not overlap, so fragments keep their tags.
+    bolts = [entity for entity, name in names.items() if name.split("/")[-1].startswith("bolt")]
+    plates = [entity for entity, name in names.items()
+              if name.split("/")[-1].split(" ")[0] in ("plate", "l-bracket")]
+    return plates, bolts
+
+
+def make_mesh(name, with_mesh_function):
+    """Meshes the assembly; returns the report of the plates and the file."""
+    tools.start("assembly " + name)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", SIZE_LIMIT)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 12)
+    plates, bolts = build_geometry()
+    shared = sorted(set(tools.surfaces_of(plates)) & set(tools.surfaces_of(bolts)))
+    print("   %d volumes, %d surfaces; %d bolts share %d surfaces with %d plates" %
+          (len(gmsh.model.getEntities(3)), len(gmsh.model.getEntities(2)), len(bolts), len(shared),
+           len(plates)), flush=True)
+
+    def add_bolt_sizes(field):
+        field.add_fixed(sources=tools.surfaces_of(bolts), attach=bolts, size=BOLT_SIZE,
+                        growth_rate=GROWTH_RATE, size_limit=SIZE_LIMIT)
+
+    asked = meshgrow.SizeField(progress=tools.progress)
+    add_bolt_sizes(asked)
+    asked.add_mesh(sources=shared, attach=plates, growth_rate=GROWTH_RATE, size_limit=SIZE_LIMIT)
+    field = asked
+    if not with_mesh_function:
+        field = meshgrow.SizeField(progress=tools.progress)
+        add_bolt_sizes(field)
+    tools.generate(field, "the assembly " + name)
+    asked.refresh()
+    path = tools.write("assembly_%s.msh" % name)
+    reports = {"plates, " + name: meshgrow.report(3, plates, asked),
+               "all, " + name: meshgrow.report(3)}
+    if with_mesh_function:
+        print("\n" + asked.summary(), end="")
+    gmsh.model.remove()
+    return reports, path
+
+
+def main():
+    gmsh.initialize()
+    without, before = make_mesh("without", False)
+    with_function, after = make_mesh("with", True)
+    rows = {**without, **with_function}
+    picture = tools.picture(before, after, "assembly.png",
+                            ("bolts fine, plates by Gmsh's own sizes",
+                             "plates grow from the bolts' faces, growth 1.2"),
+                            "--plane", "0,75,0,0,-1,0", "--focus", "33,75,15,33")
+    tools.show(dict(sorted(rows.items(), key=lambda row: row[0].split(",")[0], reverse=True)),
+               [before, after, picture])
+    gmsh.finalize()
+    return rows
+
+
+if __name__ == "__main__":
+    main()

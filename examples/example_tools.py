@@ -1,0 +1,81 @@
+"""What the examples share: where results go, words on the terminal, pictures."""
+
+import os
+import subprocess
+import sys
+import time
+
+import gmsh
+import meshgrow
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+OUT = os.environ.get("MESHGROW_EXAMPLES_OUT", os.path.join(FOLDER, "out"))
+
+
+def start(name):
+    """Starts Gmsh with a new model; only its warnings are shown."""
+    os.makedirs(OUT, exist_ok=True)
+    gmsh.option.setNumber("General.Verbosity", 2)  # warnings and errors
+    version = gmsh.option.getString("General.Version")
+    print("\n== %s (Gmsh %s)" % (name, version), flush=True)
+    gmsh.model.add(name)
+
+
+def progress(line):
+    """What a size field tells while it works."""
+    print("   " + line, flush=True)
+
+
+def boundary(entities):
+    """Boundary of entities, seams included and each once."""
+    found = []
+    for entity in entities:
+        found += gmsh.model.getBoundary([entity], combined=False, oriented=False)
+    return sorted(set(found))
+
+
+def surfaces_of(volumes):
+    """Surfaces that bound any of the volumes."""
+    return [entity for entity in boundary(volumes) if entity[0] == 2]
+
+
+def generate(field, what, dim=3):
+    """Meshes with the field and says what and how long."""
+    print("-- meshing %s" % what, flush=True)
+    begin = time.perf_counter()
+    field.generate(dim)
+    print("   %.1f s" % (time.perf_counter() - begin), flush=True)
+
+
+def write(name):
+    """Writes the current mesh, complete or not at all, and returns its path."""
+    path = os.path.join(OUT, name)
+    beside = os.path.join(OUT, "unfinished-" + name)
+    gmsh.option.setNumber("Mesh.SaveAll", 1)
+    gmsh.write(beside)
+    os.replace(beside, path)
+    return path
+
+
+def picture(before, after, name, titles, *options):
+    """Renders two meshes side by side, cut open and coloured by element size."""
+    path = os.path.join(OUT, name)
+    if os.environ.get("MESHGROW_EXAMPLES_PICTURES") == "0":
+        return None
+    print("-- rendering %s" % os.path.relpath(path), flush=True)
+    subprocess.run(
+        [sys.executable, os.path.join(FOLDER, "render_cut.py"), before, after, "-o", path,
+         "--title-before", titles[0], "--title-after", titles[1], *options], check=True)
+    return path
+
+
+def show(rows, files):
+    """Prints the report table and where the results are."""
+    print("\n" + meshgrow.report_table(rows))
+    print("ratio: size of the larger of two neighbours over the smaller; length/size: edge length over "
+          "the size asked for\n(median; good: within 1/1.41 … 1.41). gamma and SICN: element quality, "
+          "1 is best.")
+    for path in files:
+        if path:
+            print("   %s" % os.path.relpath(path))
+    sys.stdout.flush()

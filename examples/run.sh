@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Sets up a fresh machine, builds meshgrow and runs the examples. Arguments pick some of them, for
+# example: examples/run.sh figure8
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tests/setup.sh
+
+all=(figure8 assembly)
+for example in "${@:-${all[@]}}"; do
+  [ -e "examples/$example.py" ] || fail "there is no example '$example': give one of ${all[*]}."
+  say "Running examples/$example.py"
+  "$python_newest" "examples/$example.py"
+done
+say "Done. Look at the pictures in examples/out, or open a mesh: gmsh examples/out/figure8_with.msh"

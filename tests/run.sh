@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Sets up a fresh machine and runs all tests, against Debian's Gmsh 4.8.4 and the newest from PyPI.
+# Arguments go to ctest, for example: tests/run.sh -R grid
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tests/setup.sh
+
+if command -v clang-format >/dev/null; then
+  say "Checking the format"
+  git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
+fi
+
+say "Testing"
+results=$build/test-results.txt
+status=0
+ctest --test-dir "$build" --output-on-failure -j2 "$@" | tee "$results" || status=$?
+passed=$(grep -c ' Passed ' "$results" || true)
+failed=$(grep -cE '\*\*\*(Failed|Timeout|Exception|Not Run)' "$results" || true)
+skipped=$(grep -c '\*\*\*Skipped' "$results" || true)
+printf '\n%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
+[ "${status}" = 0 ] && [ "$passed" -gt 0 ] && [ "$failed" = 0 ]
