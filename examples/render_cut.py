@@ -761,12 +761,14 @@ def compose(panels, captions, size_range):
     total = 2 * margin + len(panels) * column + (len(panels) - 1) * gap
     picture = image.new("RGB", (total, heading + height + legend), "white")
     draw = image_draw.Draw(picture)
+    longest = max((title for title, _ in captions), key=len)
+    title_font = fitting_font(longest, 42, column, bold=True)
     for index, (panel, (title, count)) in enumerate(zip(panels, captions)):
         left = margin + index * (column + gap)
         picture.paste(panel, (left + (column - width) // 2, heading))
         middle = left + column / 2
         draw.text((middle, 60), title, "black", anchor="ms",
-                  font=fitting_font(title, 42, column, bold=True))
+                  font=title_font)
         draw.text((middle, 104), count, (70, 70, 70), anchor="ms",
                   font=fitting_font(count, 34, column))
     draw_legend(draw, heading + height + 28, total, size_range)

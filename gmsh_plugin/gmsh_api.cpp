@@ -196,9 +196,14 @@ std::vector<Entity> embedded(const Entity& entity) {
 Box bounding_box(const Entity& entity) {
   Vec3 low;
   Vec3 high;
-  library().call("gmshModelGetBoundingBox", entity.dim, entity.tag, &low.x(), &low.y(), &low.z(),
-                 &high.x(), &high.y(), &high.z());
-  return Box(low, high);
+  try {
+    library().call("gmshModelGetBoundingBox", entity.dim, entity.tag, &low.x(), &low.y(), &low.z(),
+                   &high.x(), &high.y(), &high.z());
+  } catch (const Error&) {
+    // A discrete entity without a mesh of its own, as when only some physical groups were saved.
+    return Box();
+  }
+  return (low.array() <= high.array()).all() ? Box(low, high) : Box();
 }
 
 std::string entity_type(const Entity& entity) {

@@ -43,6 +43,7 @@ std::vector<Entity> entities();
 /// Entities one dimension below on the boundary, seams included.
 std::vector<Entity> boundary(const Entity& entity);
 std::vector<Entity> embedded(const Entity& entity);
+/// Empty for a discrete entity without a mesh.
 Box bounding_box(const Entity& entity);
 /// Gmsh's name of the kind of entity, such as "Plane" or "Discrete surface".
 std::string entity_type(const Entity& entity);

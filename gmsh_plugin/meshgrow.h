@@ -63,7 +63,7 @@ MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
  * function whose source has no mesh is an error; 0: a warning). */
 MESHGROW_API int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value);
 
-/* Calls `listener` with each line of progress (passes of the mesher, tenths of a grid) from the thread
+/* Calls `listener` with each line of progress (passes of the mesher, how far a grid is) from the thread
  * that meshes, in place of Gmsh's log; NULL ends that. */
 MESHGROW_API int meshgrow_field_set_progress(meshgrow_field* field,
                                              void (*listener)(const char* line, void* data),

@@ -1,5 +1,6 @@
 #include "model_field.h"
 
+#include <chrono>
 #include <numeric>
 
 #include "error.h"
@@ -38,14 +39,17 @@ void ModelField::tell(const std::string& line) const {
 }
 
 void ModelField::tell_grid(const std::string& what, double done) {
-  const int tenths = static_cast<int>(10.0 * done);
-  if (what != grid_told_of_ || tenths < tenths_told_) {
+  const auto now = std::chrono::steady_clock::now();
+  if (what != grid_told_of_) {
     grid_told_of_ = what;
-    tenths_told_ = 0;
+    grid_told_at_ = now;
   }
-  if (tenths > tenths_told_) {
-    tenths_told_ = tenths;
-    tell(what + ": " + std::to_string(10 * tenths) + " %");
+  if (done == 1.0) {
+    tell(what + ": done");
+    grid_told_of_.clear();
+  } else if (now - grid_told_at_ > std::chrono::seconds(1)) {
+    tell(what + ": " + std::to_string(static_cast<int>(100.0 * done)) + " %");
+    grid_told_at_ = now;
   }
 }
 

@@ -1,6 +1,7 @@
 #ifndef MESHGROW_MODEL_FIELD_H
 #define MESHGROW_MODEL_FIELD_H
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <set>
@@ -31,7 +32,7 @@ class ModelField {
   /// Error instead of a warning when a mesh size function has no effect because a source has no mesh.
   void set_strict(bool strict) { strict_ = strict; }
 
-  /// Who is told of progress, a line at a time: passes, and each further tenth of a grid. Without a
+  /// Who is told of progress, a line at a time: passes, and each second how far a grid is. Without a
   /// listener, Gmsh's log (level info).
   using ProgressListener = std::function<void(const std::string&)>;
   void set_progress_listener(ProgressListener listener) { listener_ = std::move(listener); }
@@ -70,7 +71,7 @@ class ModelField {
   std::set<std::size_t> reported_;
   ProgressListener listener_;
   std::string grid_told_of_;
-  int tenths_told_ = 0;
+  std::chrono::steady_clock::time_point grid_told_at_;
   std::unique_ptr<SizeCallback> callback_;
 };
 

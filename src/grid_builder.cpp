@@ -42,7 +42,7 @@ void GridBuilder::build() {
         roots[i] = build_subtree(open[i].cell, *open[i].candidates, own, parts[i]);
       },
       [&](std::size_t done) {
-        if (options_.progress) {
+        if (options_.progress && done < open.size()) {
           options_.progress(static_cast<double>(done) / static_cast<double>(open.size()));
         }
       });
@@ -52,6 +52,9 @@ void GridBuilder::build() {
   }
   grid_.nodes_.exact_begin.push_back(
       static_cast<std::uint32_t>(grid_.nodes_.exact_facets.size()));
+  if (options_.progress) {
+    options_.progress(1.0);
+  }
 }
 
 std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {

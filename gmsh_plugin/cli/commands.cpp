@@ -97,8 +97,13 @@ void open_model(const std::string& file) {
   if (fs::is_directory(file)) {
     throw Error(file + " is a directory: give a file that Gmsh can open.");
   }
-  gmsh::open(file);
-  const std::string problem = gmsh::last_error();
+  std::string problem;
+  try {
+    gmsh::open(file);
+    problem = gmsh::last_error();
+  } catch (const Error& error) {
+    problem = error.what();
+  }
   if (!problem.empty()) {
     throw Error("Gmsh cannot read " + file + " (" + problem + "): correct the file.");
   }
@@ -129,10 +134,17 @@ void check_writable(const fs::path& output) {
 
 void write_mesh(const fs::path& output) {
   const fs::path unfinished = unfinished_path(output);
-  gmsh::write(unfinished.string());
+  std::string problem;
+  try {
+    gmsh::write(unfinished.string());
+  } catch (const Error& error) {
+    problem = error.what();
+  }
   std::error_code failed;
-  if (!fs::exists(unfinished) || fs::file_size(unfinished, failed) == 0) {
+  if (!problem.empty() || !fs::exists(unfinished) || fs::file_size(unfinished, failed) == 0) {
+    fs::remove(unfinished, failed);
     throw Error("Gmsh did not write " + output.string() +
+                (problem.empty() ? "" : " (" + problem + ")") +
                 ": choose an ending that it knows, such as .msh.");
   }
   fs::rename(unfinished, output);

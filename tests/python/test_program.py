@@ -1,0 +1,183 @@
+"""The program `meshgrow`: what it does, and one sentence for each bad input."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+
+BOX = """
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Box(2) = {1, 0, 0, 1, 1, 1};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+Physical Volume("left part") = {1};
+Physical Volume("right") = {2};
+Mesh.SaveAll = 1;
+"""
+FIXED = "fixed source Surface{1} attach Physical Volume{left part} size 0.1 growth 1.3 limit 0.5"
+MESH = "mesh source Surface{2} attach Volume{2} growth 1.3 limit 0.5"
+
+
+@pytest.fixture
+def box(tmp_path):
+    path = tmp_path / "box.geo"
+    path.write_text(BOX)
+    return path
+
+
+def run(*arguments, **environment):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          env={**os.environ, **environment})
+
+
+def mesh(*arguments):
+    result = run("mesh", *arguments)
+    assert result.returncode == 0, result.stderr
+    return result.stdout
+
+
+def assert_refused(result, *words):
+    """Non-zero exit and one line of error with these words."""
+    assert result.returncode != 0
+    lines = [line for line in result.stderr.splitlines() if line.startswith("meshgrow: ")]
+    assert len(lines) == 1, result.stderr
+    for word in words:
+        assert word in lines[0]
+
+
+def test_meshes_a_model_and_tells_what_comes_next(box, tmp_path):
+    out = tmp_path / "out.msh"
+    text = mesh(box, "-3", "-o", out, "--size-function", FIXED, "--size-function", MESH)
+    assert out.stat().st_size > 1000
+    assert "Meshing, pass 1" in text
+    assert "Background grid" in text
+    assert "ratio max" in text
+    assert "gmsh %s" % out in text
+
+
+def test_default_output_stands_beside_the_model(box):
+    mesh(box, "-2")
+    assert box.with_suffix(".msh").exists()
+
+
+def test_size_functions_come_from_a_file_too(box, tmp_path):
+    definitions = tmp_path / "sizes.txt"
+    definitions.write_text("# comment\n\n%s\n  %s  \n" %
+                           (FIXED.replace("size 0.1", "size 0.05"), MESH))
+    coarse = mesh(box, "-3", "-o", tmp_path / "coarse.msh")
+    fine = mesh(box, "-3", "-o", tmp_path / "fine.msh", "--size-functions", definitions)
+    assert "No size function is given" in coarse
+    assert "Mesh size function 2" in fine
+    assert (tmp_path / "fine.msh").stat().st_size > 3 * (tmp_path / "coarse.msh").stat().st_size
+
+
+def test_report_compares_meshes_and_measures_sizes_from_the_file_alone(box, tmp_path):
+    files = [tmp_path / "a.msh", tmp_path / "b.msh"]
+    mesh(box, "-3", "-o", files[0])
+    mesh(box, "-3", "-o", files[1], "--size-function", FIXED)
+    result = run("report", *files, "--json", "--entities", 'Physical Volume{"left part"}',
+                 "--size-function", FIXED.replace("fixed", "mesh").replace(" size 0.1", ""))
+    assert result.returncode == 0, result.stderr
+    rows = json.loads(result.stdout)
+    assert [row["name"] for row in rows] == [str(f) for f in files]
+    assert rows[1]["report"]["elements"] > rows[0]["report"]["elements"]
+    assert 0.8 < rows[1]["report"]["length_median"] < 1.6
+    table = run("report", *files).stdout
+    assert len(table.splitlines()) == 3
+
+
+def test_two_dimensional_report(box, tmp_path):
+    mesh(box, "-2", "-o", tmp_path / "a.msh")
+    result = run("report", tmp_path / "a.msh", "--dim", 2, "--json")
+    assert json.loads(result.stdout)[0]["report"]["elements"] > 10
+
+
+@pytest.mark.parametrize("function, words", [
+    ("mesh source Surface{2} attach Volume{2} growth 0.9 limit 1", ["growth rate", "0.9"]),
+    ("mesh source Surface{2} attach Volume{2} growth nan limit 1", ["growth rate", "nan"]),
+    ("mesh source Surface{2} attach Volume{2} growth 1.2 limit -1", ["size limit", "-1"]),
+    ("mesh source Surface{2} attach Volume{2} growth 1.2 limit nan", ["size limit", "nan"]),
+    ("mesh source Surface{99} attach Volume{2} growth 1.2 limit 1", ["Surface 99"]),
+    ("mesh source Surface{2} attach Volume{7} growth 1.2 limit 1", ["Volume 7"]),
+    ("mesh source Surface{2} attach Physical Volume{lost} growth 1.2 limit 1", ["lost"]),
+    ("mesh source Surface{2} attach Surface{2} growth 1.2 limit 1",
+     ["Surface 2", "source and attachment"]),
+    ("fixed source Surface{2} attach Volume{2} size 0 growth 1.2 limit 1", ["'size'"]),
+    ("mesh source Surface{2} attach Volume{2} grow 1.2 limit 1", ["position 41", "'growth'"]),
+    ("", ["'mesh' or 'fixed'"]),
+])
+def test_bad_size_function_is_refused_and_nothing_is_written_over(box, tmp_path, function, words):
+    out = tmp_path / "out.msh"
+    out.write_text("precious")
+    assert_refused(run("mesh", box, "-3", "-o", out, "--size-function", function), *words)
+    assert out.read_text() == "precious"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["box.geo", "out.msh"]
+
+
+def test_strict_refuses_a_source_that_will_have_no_mesh(box, tmp_path):
+    # Up to dimension 1, the source surface is not meshed before the curves that grow from it.
+    arguments = ["mesh", box, "-1", "-o", tmp_path / "out.msh", "--size-function",
+                 "mesh source Surface{1} attach Volume{2} growth 1.2 limit 1"]
+    assert_refused(run(*arguments, "--strict"), "Surface 1", "no mesh")
+    relaxed = run(*arguments)
+    assert relaxed.returncode == 0
+    assert "Surface 1 has no mesh" in relaxed.stdout + relaxed.stderr
+
+
+@pytest.mark.parametrize("content, words", [
+    (None, ["Cannot read"]),
+    ("this is no geometry {", ["Gmsh cannot read"]),
+    ("", ["no geometry"]),
+])
+def test_unreadable_model(tmp_path, content, words):
+    model = tmp_path / "model.geo"
+    if content is not None:
+        model.write_text(content)
+    assert_refused(run("mesh", model, "-o", tmp_path / "out.msh"), "model.geo", *words)
+    assert not (tmp_path / "out.msh").exists()
+
+
+def test_unreadable_file_of_size_functions(box, tmp_path):
+    assert_refused(run("mesh", box, "-o", tmp_path / "out.msh", "--size-functions",
+                       tmp_path / "missing.txt"), "missing.txt")
+
+
+def test_unwritable_output(box, tmp_path):
+    assert_refused(run("mesh", box, "-o", tmp_path / "missing" / "out.msh"), "Cannot write")
+    assert_refused(run("mesh", box, "-o", tmp_path), "Cannot write")
+
+
+def test_the_model_is_never_written_over(tmp_path, box):
+    mesh(box, "-3", "-o", tmp_path / "old.msh")
+    before = (tmp_path / "old.msh").read_bytes()
+    assert_refused(run("mesh", tmp_path / "old.msh", "-3"), "written over")
+    assert (tmp_path / "old.msh").read_bytes() == before
+
+
+def test_output_in_an_unknown_format(box, tmp_path):
+    assert_refused(run("mesh", box, "-3", "-o", tmp_path / "out.nonsense"), "out.nonsense")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["box.geo"]
+
+
+def test_no_libgmsh(box):
+    assert_refused(run("mesh", box, MESHGROW_GMSH_LIB="/nowhere/libgmsh.so"), "MESHGROW_GMSH_LIB")
+
+
+def test_wrong_command_line():
+    assert run("mesh").returncode != 0
+    assert run("weave").returncode != 0
+    assert run("--version").stdout.startswith("meshgrow ")
+
+
+def test_unknown_option_is_named(box):
+    result = run("mesh", box, "--nonsense")
+    assert result.returncode != 0
+    assert "--nonsense" in result.stderr + result.stdout
+
+
+if __name__ == "__main__":
+    sys.exit(pytest.main([__file__]))
