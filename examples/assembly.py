@@ -74,7 +74,8 @@ def make_mesh(name, with_mesh_function):
         field = meshgrow.SizeField(progress=tools.progress)
         add_bolt_sizes(field)
     tools.generate(field, "the assembly " + name)
-    asked.refresh()
+    if not with_mesh_function:
+        asked.refresh()
     path = tools.write("assembly_%s.msh" % name)
     reports = {"plates, " + name: meshgrow.report(3, plates, asked),
                "all, " + name: meshgrow.report(3)}

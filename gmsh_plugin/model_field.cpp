@@ -133,6 +133,8 @@ void ModelField::refresh() {
 void ModelField::refresh_if_needed() {
   if (!sources_read_) {
     refresh();
+  } else {
+    field_.build();
   }
 }
 
@@ -144,7 +146,20 @@ void ModelField::register_callback() {
 }
 
 void ModelField::generate(int dim) {
-  OrderedMesher(*this).generate(dim);
+  const bool was_registered = is_registered();
+  unregister_callback();
+  const auto register_again = [&] {
+    if (was_registered) {
+      callback_ = std::make_unique<SizeCallback>(field_, model_);
+    }
+  };
+  try {
+    OrderedMesher(*this).generate(dim);
+  } catch (...) {
+    register_again();
+    throw;
+  }
+  register_again();
   sources_read_ = true;
 }
 

@@ -20,6 +20,8 @@ class ModelField {
   /// Of the current model. Throws Error without libgmsh, before gmsh.initialize(), with a Gmsh older
   /// than 4.8 and for a model without entities.
   ModelField();
+  ModelField(const ModelField&) = delete;
+  ModelField& operator=(const ModelField&) = delete;
 
   std::size_t add(SizeFunction function);
   /// Adds a function by its one-line text (size_function_text.h).
@@ -42,7 +44,7 @@ class ModelField {
   /// for) mesh size functions without a meshed source.
   void refresh();
 
-  /// `refresh` unless sources were read since the last function was added.
+  /// `refresh` unless sources were read since the last function was added; builds what is not built.
   void refresh_if_needed();
 
   /// Registers the field as Gmsh's size callback, sources read as they are now.

@@ -61,13 +61,11 @@ void OrderedMesher::generate(int dim) {
       curves_follow_ = false;
       mesh({all_.begin(), all_.end()}, dim);
       premeshed_.put_back_changed();
+      read_new_sources();
     } catch (...) {
       premeshed_.put_back_missing();
       throw;
     }
-  }
-  if (model_field_.is_registered()) {
-    model_field_.callback_ = std::make_unique<SizeCallback>(field_, model_field_.model());
   }
   if (element_order > 1.0) {
     gmsh::set_order(static_cast<int>(element_order));

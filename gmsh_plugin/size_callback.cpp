@@ -1,5 +1,6 @@
 #include "size_callback.h"
 
+#include <memory>
 #include <utility>
 
 #include "gmsh_api.h"
@@ -12,14 +13,19 @@ namespace {
 /// What Gmsh itself takes for "no size".
 constexpr double gmsh_no_size = 1e22;
 
-double callback_until_48(int dim, int tag, double x, double y, double z, void* field) {
+double answer_from(void* slot, int dim, int tag, double x, double y, double z, double proposed) {
+  const SizeField* field = static_cast<const SizeCallback::Slot*>(slot)->field;
+  return field == nullptr ? proposed : answer_size(*field, dim, tag, x, y, z, proposed);
+}
+
+double callback_until_48(int dim, int tag, double x, double y, double z, void* slot) {
   // 4.8 takes the minimum of all its sizes and this answer by itself.
-  return answer_size(*static_cast<const SizeField*>(field), dim, tag, x, y, z, gmsh_no_size);
+  return answer_from(slot, dim, tag, x, y, z, gmsh_no_size);
 }
 
 double callback_since_49(int dim, int tag, double x, double y, double z, double proposed,
-                         void* field) {
-  return answer_size(*static_cast<const SizeField*>(field), dim, tag, x, y, z, proposed);
+                         void* slot) {
+  return answer_from(slot, dim, tag, x, y, z, proposed);
 }
 
 }  // namespace
@@ -36,15 +42,21 @@ double answer_size(const SizeField& field, int dim, int tag, double x, double y,
 
 SizeCallback::SizeCallback(const SizeField& field, std::string model) : model_(std::move(model)) {
   const CurrentModel current(model_);
-  gmsh::set_size_callback(callback_until_48, callback_since_49, const_cast<SizeField*>(&field));
+  auto slot = std::make_unique<Slot>();
+  slot->field = &field;
+  gmsh::set_size_callback(callback_until_48, callback_since_49, slot.get());
+  slot_ = slot.release();
 }
 
 SizeCallback::~SizeCallback() {
+  slot_->field = nullptr;
   try {
     const CurrentModel current(model_);
     gmsh::remove_size_callback();
+    delete slot_;
   } catch (...) {
-    // Gmsh was finalized or the model removed: the callback is gone with it.
+    // Gmsh was finalized or the model removed. Gmsh 4.8 may call back all the same later on: the
+    // empty slot stays for it.
   }
 }
 

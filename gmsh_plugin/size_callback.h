@@ -1,6 +1,7 @@
 #ifndef MESHGROW_SIZE_CALLBACK_H
 #define MESHGROW_SIZE_CALLBACK_H
 
+#include <atomic>
 #include <string>
 
 #include "size_field.h"
@@ -24,8 +25,14 @@ class SizeCallback {
   SizeCallback(const SizeCallback&) = delete;
   SizeCallback& operator=(const SizeCallback&) = delete;
 
+  /// What Gmsh holds a pointer to.
+  struct Slot {
+    std::atomic<const SizeField*> field;
+  };
+
  private:
   std::string model_;
+  Slot* slot_;  ///< owned while Gmsh can be told to forget it, else left to Gmsh, empty
 };
 
 }  // namespace meshgrow

@@ -17,6 +17,10 @@ struct Facet {
   static Facet segment(const Vec3& a, const Vec3& b) { return {{a, b, b}, 2}; }
   static Facet triangle(const Vec3& a, const Vec3& b, const Vec3& c) { return {{a, b, c}, 3}; }
 
+  friend bool operator==(const Facet& a, const Facet& b) {
+    return a.corner_count == b.corner_count && a.corners == b.corners;
+  }
+
   Box box() const;
   Vec3 centroid() const;
 };

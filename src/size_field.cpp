@@ -79,6 +79,9 @@ DroppedFacets SizeField::set_sources(std::size_t function,
     dropped.zero_size += more.zero_size;
     dropped.not_finite += more.not_finite;
   }
+  if (facets == facets_[function]) {
+    return dropped;  // trees and grids are good as they are
+  }
   facets_[function] = std::move(facets);
   for (Group& group : groups_) {
     for (const Action& action : group.actions) {

@@ -15,6 +15,10 @@ struct SizedFacet {
   double start_size = 0.0;  ///< S0 > 0, model units
   double slope = 0.0;       ///< α in [0, 1)
 
+  friend bool operator==(const SizedFacet& a, const SizedFacet& b) {
+    return a.facet == b.facet && a.start_size == b.start_size && a.slope == b.slope;
+  }
+
   /// S0 + α · distance: the size that this facet alone asks for at p.
   double size_at(const Vec3& p) const { return start_size + slope * distance(facet, p); }
 };
