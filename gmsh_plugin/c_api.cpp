@@ -318,8 +318,7 @@ char* meshgrow_field_summary_json(meshgrow_field* field) {
   });
 }
 
-char* meshgrow_report_json(int dim, const int* entities, size_t entities_n,
-                           meshgrow_field* field) {
+char* meshgrow_report_json(int dim, const int* entities, size_t entities_n, meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
     if (dim != 2 && dim != 3) {
       throw Error("A report is about dimension 2 or 3, not " + std::to_string(dim) + ".");

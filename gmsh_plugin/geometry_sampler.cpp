@@ -28,7 +28,8 @@ class CurveSampler {
   void sample() {
     const auto bounds = gmsh::parameter_bounds(curve_);
     if (bounds.size() != 1) {
-      throw Error(entity_name(curve_) + " has neither a mesh nor a parametrisation: mesh it first.");
+      throw Error(entity_name(curve_) +
+                  " has neither a mesh nor a parametrisation: mesh it first.");
     }
     const auto [low, high] = bounds[0];
     std::vector<double> parameters;

@@ -104,7 +104,8 @@ Version require_gmsh() {
   const std::string version_text = take_string(text);
   Version version;
   if (std::sscanf(version_text.c_str(), "%d.%d", &version.major, &version.minor) != 2) {
-    throw Error("The libgmsh in use (" + gmsh.path() + ") tells no version: install Gmsh 4.8 or "
+    throw Error("The libgmsh in use (" + gmsh.path() +
+                ") tells no version: install Gmsh 4.8 or "
                 "later.");
   }
   if (std::make_pair(version.major, version.minor) < std::make_pair(4, 8)) {
@@ -188,8 +189,7 @@ std::vector<Entity> boundary(const Entity& entity) {
 
 std::vector<Entity> embedded(const Entity& entity) {
   GmshArray<int> result;
-  library().call("gmshModelMeshGetEmbedded", entity.dim, entity.tag, result.data(),
-                 result.size());
+  library().call("gmshModelMeshGetEmbedded", entity.dim, entity.tag, result.data(), result.size());
   return to_entities(result.copy());
 }
 

@@ -10,8 +10,8 @@
 #include "geometry.h"
 
 /// The part of Gmsh that meshgrow uses, as C++ values over the C API found at run time. Every
-/// function throws meshgrow::Error with Gmsh's message when Gmsh reports a failure. Not thread-safe,
-/// as Gmsh is not, unless said otherwise.
+/// function throws meshgrow::Error with Gmsh's message when Gmsh reports a failure. Not
+/// thread-safe, as Gmsh is not, unless said otherwise.
 namespace meshgrow::gmsh {
 
 struct Version {

@@ -10,7 +10,8 @@
 namespace meshgrow {
 
 /// The libgmsh of this process, found at run time (DESIGN.md, section 4): the one that is loaded
-/// already, else the file named by the environment variable MESHGROW_GMSH_LIB, else the usual names.
+/// already, else the file named by the environment variable MESHGROW_GMSH_LIB, else the usual
+/// names.
 ///
 /// Only functions of Gmsh's C API are looked up; they are the same for every C++ ABI.
 class GmshLibrary {

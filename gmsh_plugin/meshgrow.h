@@ -58,13 +58,13 @@ MESHGROW_API int meshgrow_field_add_fixed(meshgrow_field* field, const int* sour
  * "mesh source Surface{7} attach Volume{2} growth 1.2 limit 2" */
 MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
 
-/* Options, before the field is used: "tolerance" (relative, of the background grid; 0.05), "threads"
- * (that build grids; 0: all), "exact" (1: sizes by the tree, no grid; 0), "strict" (1: a mesh size
- * function whose source has no mesh is an error; 0: a warning). */
+/* Options, before the field is used: "tolerance" (relative, of the background grid; 0.05),
+ * "threads" (that build grids; 0: all), "exact" (1: sizes by the tree, no grid; 0), "strict" (1: a
+ * mesh size function whose source has no mesh is an error; 0: a warning). */
 MESHGROW_API int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value);
 
-/* Calls `listener` with each line of progress (passes of the mesher, how far a grid is) from the thread
- * that meshes, in place of Gmsh's log; NULL ends that. */
+/* Calls `listener` with each line of progress (passes of the mesher, how far a grid is) from the
+ * thread that meshes, in place of Gmsh's log; NULL ends that. */
 MESHGROW_API int meshgrow_field_set_progress(meshgrow_field* field,
                                              void (*listener)(const char* line, void* data),
                                              void* data);
@@ -80,8 +80,8 @@ MESHGROW_API int meshgrow_field_unregister(meshgrow_field* field);
  * before keeps it: node tags, coordinates to the bit, connectivity. */
 MESHGROW_API int meshgrow_field_generate(meshgrow_field* field, int dim);
 
-/* Sizes asked for on an entity at `points_n` points (three doubles each) into `sizes`; infinite where
- * no function acts. From the grid, or exact without it. The first call reads the sources. */
+/* Sizes asked for on an entity at `points_n` points (three doubles each) into `sizes`; infinite
+ * where no function acts. From the grid, or exact without it. The first call reads the sources. */
 MESHGROW_API int meshgrow_field_size(meshgrow_field* field, int dim, int tag, const double* points,
                                      size_t points_n, double* sizes);
 MESHGROW_API int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag,

@@ -103,12 +103,11 @@ void ModelField::report_unmeshed(std::size_t function, bool throw_if_strict) {
   if (unmeshed.empty()) {
     return;
   }
-  const std::string sentence =
-      field_.function_name(function) + ": " + entity_names(unmeshed) +
-      (unmeshed.size() == 1 ? " has no mesh" : " have no mesh") +
-      (field_.is_effective(function) ? ", so only its other sources act"
-                                     : ", so the function has no effect") +
-      ": mesh the source before what grows from it.";
+  const std::string sentence = field_.function_name(function) + ": " + entity_names(unmeshed) +
+                               (unmeshed.size() == 1 ? " has no mesh" : " have no mesh") +
+                               (field_.is_effective(function) ? ", so only its other sources act"
+                                                              : ", so the function has no effect") +
+                               ": mesh the source before what grows from it.";
   if (strict_ && throw_if_strict) {
     throw Error(sentence);
   }

@@ -13,12 +13,12 @@
 
 namespace meshgrow {
 
-/// The size field of a Gmsh model: defines size functions, reads their sources out of the model, and
-/// gives Gmsh the sizes. Not thread-safe, as Gmsh is not; only `SizeField`'s own queries are.
+/// The size field of a Gmsh model: defines size functions, reads their sources out of the model,
+/// and gives Gmsh the sizes. Not thread-safe, as Gmsh is not; only `SizeField`'s own queries are.
 class ModelField {
  public:
-  /// Of the current model. Throws Error without libgmsh, before gmsh.initialize(), with a Gmsh older
-  /// than 4.8 and for a model without entities.
+  /// Of the current model. Throws Error without libgmsh, before gmsh.initialize(), with a Gmsh
+  /// older than 4.8 and for a model without entities.
   ModelField();
   ModelField(const ModelField&) = delete;
   ModelField& operator=(const ModelField&) = delete;
@@ -31,11 +31,12 @@ class ModelField {
   SizeField& field() { return field_; }
   const SizeField& field() const { return field_; }
 
-  /// Error instead of a warning when a mesh size function has no effect because a source has no mesh.
+  /// Error instead of a warning when a mesh size function has no effect because a source has no
+  /// mesh.
   void set_strict(bool strict) { strict_ = strict; }
 
-  /// Who is told of progress, a line at a time: passes, and each second how far a grid is. Without a
-  /// listener, Gmsh's log (level info).
+  /// Who is told of progress, a line at a time: passes, and each second how far a grid is. Without
+  /// a listener, Gmsh's log (level info).
   using ProgressListener = std::function<void(const std::string&)>;
   void set_progress_listener(ProgressListener listener) { listener_ = std::move(listener); }
   void tell(const std::string& line) const;
@@ -44,7 +45,8 @@ class ModelField {
   /// for) mesh size functions without a meshed source.
   void refresh();
 
-  /// `refresh` unless sources were read since the last function was added; builds what is not built.
+  /// `refresh` unless sources were read since the last function was added; builds what is not
+  /// built.
   void refresh_if_needed();
 
   /// Registers the field as Gmsh's size callback, sources read as they are now.

@@ -39,18 +39,9 @@ FacetedSource read_entity_mesh(const Entity& entity, const NodeCoordinates& node
 /// dimension if none is named.
 ReportMesh read_report_mesh(int dim, std::vector<Entity> entities);
 
-/// What an element type is by its corner nodes; `unknown` for types that meshgrow does not read, such
-/// as polygons and trihedra.
-enum class ElementFamily {
-  line,
-  triangle,
-  quad,
-  tetrahedron,
-  hexahedron,
-  prism,
-  pyramid,
-  unknown
-};
+/// What an element type is by its corner nodes; `unknown` for types that meshgrow does not read,
+/// such as polygons and trihedra.
+enum class ElementFamily { line, triangle, quad, tetrahedron, hexahedron, prism, pyramid, unknown };
 ElementFamily element_family(const gmsh::ElementType& type);
 
 }  // namespace meshgrow

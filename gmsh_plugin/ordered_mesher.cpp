@@ -20,15 +20,17 @@ void OrderedMesher::check_model() const {
   std::vector<Entity> now = gmsh::entities();
   std::sort(now.begin(), now.end());
   if (now != all_) {
-    throw Error("The model has other entities than when this size field was made: make a new field "
-                "after changing the geometry.");
+    throw Error(
+        "The model has other entities than when this size field was made: make a new field "
+        "after changing the geometry.");
   }
 }
 
 void OrderedMesher::check_options() const {
   if (gmsh::option("Mesh.SubdivisionAlgorithm") != 0.0) {
-    throw Error("Mesh.SubdivisionAlgorithm would split the premeshed elements too: set it to 0 and "
-                "call refine() after meshing.");
+    throw Error(
+        "Mesh.SubdivisionAlgorithm would split the premeshed elements too: set it to 0 and "
+        "call refine() after meshing.");
   }
 }
 
@@ -118,8 +120,7 @@ void OrderedMesher::report_unmeshed_sources(const std::vector<Entity>& entities)
     for (const std::size_t function : field_.functions_on(entity)) {
       // A source's own boundary is meshed before it, and other sources of the function are not
       // asked to wait for it.
-      const std::set<Entity> own =
-          field_.topology().closure(field_.functions()[function].sources);
+      const std::set<Entity> own = field_.topology().closure(field_.functions()[function].sources);
       if (own.count(entity) == 0) {
         functions.insert(function);
       }

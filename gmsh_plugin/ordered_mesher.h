@@ -11,14 +11,14 @@
 
 namespace meshgrow {
 
-/// Drives Gmsh's 1D, 2D and 3D algorithms over a model so that the sources of mesh size functions are
-/// meshed before what grows from them (paper, sections 4.3 and 5.1).
+/// Drives Gmsh's 1D, 2D and 3D algorithms over a model so that the sources of mesh size functions
+/// are meshed before what grows from them (paper, sections 4.3 and 5.1).
 ///
-/// First all sources with their boundaries, then everything else, each dimension by dimension; a pass
-/// of Gmsh holds only entities on which an effective function acts, with Gmsh's own growth from the
-/// boundary switched off, or only others, with the user's setting. What had a mesh at the beginning
-/// is left out of all passes and is unchanged at the end. Gmsh's options, visibility and current
-/// model are restored, also on errors; what was meshed before an error is kept.
+/// First all sources with their boundaries, then everything else, each dimension by dimension; a
+/// pass of Gmsh holds only entities on which an effective function acts, with Gmsh's own growth
+/// from the boundary switched off, or only others, with the user's setting. What had a mesh at the
+/// beginning is left out of all passes and is unchanged at the end. Gmsh's options, visibility and
+/// current model are restored, also on errors; what was meshed before an error is kept.
 class OrderedMesher {
  public:
   explicit OrderedMesher(ModelField& model_field);

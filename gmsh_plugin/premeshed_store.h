@@ -13,8 +13,8 @@ namespace meshgrow {
 /// drops the meshes of all surfaces and volumes when it meshes curves, and makes meshes of higher
 /// order first order (DESIGN.md, section 5, lines 1 and 3).
 ///
-/// Kept are, for each entity: node tags, coordinates to the bit, connectivity and order of elements.
-/// Element tags are not.
+/// Kept are, for each entity: node tags, coordinates to the bit, connectivity and order of
+/// elements. Element tags are not.
 class PremeshedStore {
  public:
   /// Copies the meshes of all curves, surfaces and volumes of the model that have elements.
@@ -29,8 +29,8 @@ class PremeshedStore {
   /// Puts back every stored mesh that is gone entirely, as after a pass over curves.
   void put_back_missing() const;
 
-  /// Puts back every stored mesh that differs in any way; meshes on top of it are taken off and laid
-  /// on again. Throws Error, naming the entities, if one still differs afterwards.
+  /// Puts back every stored mesh that differs in any way; meshes on top of it are taken off and
+  /// laid on again. Throws Error, naming the entities, if one still differs afterwards.
   void put_back_changed() const;
 
   /// Stored entities whose mesh is not as it was.

@@ -8,10 +8,10 @@
 
 namespace meshgrow {
 
-/// What Gmsh is told on a question for the entity (dim, tag) at (x, y, z), where it proposes the size
-/// `proposed`: the smaller of the proposal and the field's size; the proposal itself where no function
-/// acts and for anything unusual (an unknown dimension, a point that is not finite). Never throws; may
-/// be called from any thread while the field is not being changed.
+/// What Gmsh is told on a question for the entity (dim, tag) at (x, y, z), where it proposes the
+/// size `proposed`: the smaller of the proposal and the field's size; the proposal itself where no
+/// function acts and for anything unusual (an unknown dimension, a point that is not finite). Never
+/// throws; may be called from any thread while the field is not being changed.
 double answer_size(const SizeField& field, int dim, int tag, double x, double y, double z,
                    double proposed) noexcept;
 

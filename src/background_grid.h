@@ -14,7 +14,8 @@ namespace meshgrow {
 struct GridOptions {
   /// Relative tolerance t: the grid's size is at most (1 + t) times the exact one, everywhere.
   double tolerance = 0.05;
-  /// OpenMP threads that build; 0: OMP_NUM_THREADS, else all processors. The result does not depend on it.
+  /// OpenMP threads that build; 0: OMP_NUM_THREADS, else all processors. The result does not depend
+  /// on it.
   int threads = 0;
   /// A cell with at most so many facets left may keep them and answer from them.
   int facets_per_exact_leaf = 16;
@@ -28,9 +29,9 @@ struct GridOptions {
 /// `size(p) ≤ (1 + t) h(p)` at every point p, by proof and not by sampling: in an interpolated cell
 /// each facet that can matter has a tangent plane, a lower bound of its convex size, that stands
 /// above the corner values divided by 1 + t at all eight corners; trilinear interpolation carries
-/// that order to the whole cell. Beside the source, where no such plane exists, a cell keeps the few
-/// facets that can rule in it and answers from them. That the grid is not much *smaller* than h is
-/// checked at 19 points of each interpolated cell unless one facet proves it.
+/// that order to the whole cell. Beside the source, where no such plane exists, a cell keeps the
+/// few facets that can rule in it and answers from them. That the grid is not much *smaller* than h
+/// is checked at 19 points of each interpolated cell unless one facet proves it.
 ///
 /// Immutable after construction; every const function may be called from any thread.
 class BackgroundGrid {

@@ -7,7 +7,8 @@ namespace meshgrow {
 
 namespace {
 
-/// Up to so many facets it is cheaper to look at the tangent plane of each than to descend the tree.
+/// Up to so many facets it is cheaper to look at the tangent plane of each than to descend the
+/// tree.
 constexpr std::size_t direct_evaluation_limit = 2048;
 
 /// Below this distance, in half edges, the direction to a facet is mostly rounding.
@@ -58,8 +59,7 @@ void CellClassifier::compute_tangents(const GridCell& cell,
     }
   }
   for (int i = 0; i < 8; ++i) {
-    best_corners_[i] =
-        best_ < 0 ? size_limit_ : facets[candidates[best_]].size_at(cell.corner(i));
+    best_corners_[i] = best_ < 0 ? size_limit_ : facets[candidates[best_]].size_at(cell.corner(i));
   }
 }
 

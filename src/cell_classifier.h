@@ -11,10 +11,11 @@ namespace meshgrow {
 
 /// Decides whether a cell of the background grid may be a leaf, and which facets its children need.
 ///
-/// Each facet's size h_f = S0 + α · distance is convex, so its tangent plane T_f at the cell's centre
-/// is a lower bound of it everywhere. Linear functions are reproduced by trilinear interpolation,
-/// whose weights are not negative; hence an order between T_f and other values at the eight corners
-/// holds in the whole cell. Three proofs rest on that, with g the facet that rules at the centre:
+/// Each facet's size h_f = S0 + α · distance is convex, so its tangent plane T_f at the cell's
+/// centre is a lower bound of it everywhere. Linear functions are reproduced by trilinear
+/// interpolation, whose weights are not negative; hence an order between T_f and other values at
+/// the eight corners holds in the whole cell. Three proofs rest on that, with g the facet that
+/// rules at the centre:
 ///
 /// - f never rules in the cell if T_f ≥ h_g at the corners (h_f ≥ T_f ≥ interpolated h_g ≥ h_g);
 /// - the interpolant u of the exact corner values stays below (1 + t) h_f if (1 + t) T_f ≥ u at the

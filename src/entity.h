@@ -7,7 +7,8 @@
 
 namespace meshgrow {
 
-/// A model entity as Gmsh names it: dimension 0 (point), 1 (curve), 2 (surface), 3 (volume) and tag.
+/// A model entity as Gmsh names it: dimension 0 (point), 1 (curve), 2 (surface), 3 (volume) and
+/// tag.
 struct Entity {
   int dim = 0;
   int tag = 0;

@@ -10,7 +10,8 @@
 namespace meshgrow {
 
 /// Bounding volume hierarchy over sized facets. Each node carries the smallest start size and the
-/// smallest slope below it, so a best-first descent finds the exact minimum of S0 + α · distance over
+/// smallest slope below it, so a best-first descent finds the exact minimum of S0 + α · distance
+/// over
 /// **all** facets, not only over the nearest one (DESIGN.md, section 2).
 ///
 /// Immutable after construction; every const function may be called from any thread.
@@ -26,8 +27,8 @@ class FacetTree {
   double size(const Vec3& p, double upper_bound = infinity) const;
 
   struct Closest {
-    std::size_t facet = 0;         ///< index into facets()
-    double distance = infinity;    ///< model units; infinite when the tree is empty
+    std::size_t facet = 0;       ///< index into facets()
+    double distance = infinity;  ///< model units; infinite when the tree is empty
   };
 
   /// The facet nearest to the finite point p, whatever its start size.
@@ -44,7 +45,8 @@ class FacetTree {
     Box box;
     double min_start_size;
     double min_slope;
-    std::uint32_t first;  ///< first facet of a leaf, else index of the first of two adjacent children
+    std::uint32_t
+        first;  ///< first facet of a leaf, else index of the first of two adjacent children
     std::uint32_t count;  ///< facets of a leaf, 0 for an inner node
   };
 

@@ -16,7 +16,8 @@ constexpr int max_depth = 20;
 /// So many open cells are enough to keep all threads busy to the end.
 constexpr std::size_t open_cells_wanted = 512;
 
-/// Taken off the tolerance: rounding of corner values to float (6e-8) and of the tangents' direction.
+/// Taken off the tolerance: rounding of corner values to float (6e-8) and of the tangents'
+/// direction.
 constexpr double rounding_reserve = 1e-6;
 
 using Verdict = CellClassifier::Verdict;
@@ -50,8 +51,7 @@ void GridBuilder::build() {
     append_subtree(parts[i], roots[i], open[i]);
     parts[i] = Nodes();
   }
-  grid_.nodes_.exact_begin.push_back(
-      static_cast<std::uint32_t>(grid_.nodes_.exact_facets.size()));
+  grid_.nodes_.exact_begin.push_back(static_cast<std::uint32_t>(grid_.nodes_.exact_facets.size()));
   if (options_.progress) {
     options_.progress(1.0);
   }
@@ -65,8 +65,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   root.cell.centre = grid_.origin_ + Vec3::Constant(root.cell.half_edge);
   root.candidates = all;
   for (int i = 0; i < 8; ++i) {
-    root.cell.corner_values[i] =
-        grid_.tree_->size(root.cell.corner(i), grid_.size_limit_);
+    root.cell.corner_values[i] = grid_.tree_->size(root.cell.corner(i), grid_.size_limit_);
   }
 
   // Block 0 stands above the root: its first child is the root's own place.

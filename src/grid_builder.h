@@ -10,8 +10,8 @@
 namespace meshgrow {
 
 /// Builds the octree of a BackgroundGrid: the topmost levels breadth-first, then the subtrees below
-/// them in parallel, joined in a fixed order. Every decision depends on its cell alone, so the result
-/// is the same to the bit for any number of threads.
+/// them in parallel, joined in a fixed order. Every decision depends on its cell alone, so the
+/// result is the same to the bit for any number of threads.
 class GridBuilder {
  public:
   GridBuilder(BackgroundGrid& grid, const GridOptions& options);

@@ -7,8 +7,8 @@
 
 namespace meshgrow {
 
-/// A cubic cell of the background grid. Corner i lies at the centre ± half_edge along x, y, z by the
-/// bits 0, 1, 2 of i.
+/// A cubic cell of the background grid. Corner i lies at the centre ± half_edge along x, y, z by
+/// the bits 0, 1, 2 of i.
 struct GridCell {
   Vec3 centre;
   double half_edge = 0.0;

@@ -3,10 +3,11 @@
 
 namespace meshgrow {
 
-/// How element size grows with the distance from a source (paper, section 4.1; DESIGN.md, section 2).
+/// How element size grows with the distance from a source (paper, section 4.1; DESIGN.md, section
+/// 2).
 ///
-/// With R_0 = 0, R_n = S0 (g + g² + … + gⁿ) and S_n = S0 gⁿ, linear in between, the whole law is one
-/// straight line: S(R) = S0 + α R with the slope α = 1 − 1/g.
+/// With R_0 = 0, R_n = S0 (g + g² + … + gⁿ) and S_n = S0 gⁿ, linear in between, the whole law is
+/// one straight line: S(R) = S0 + α R with the slope α = 1 − 1/g.
 ///
 /// All functions are pure and may be called from any thread.
 

@@ -14,7 +14,8 @@ namespace meshgrow {
 namespace {
 
 using Edge = std::array<int, 2>;
-using Face = std::array<int, 4>;  // the last is -1 for a triangle or edge, so is the third for an edge
+using Face =
+    std::array<int, 4>;  // the last is -1 for a triangle or edge, so is the third for an edge
 
 struct Shape {
   int corners;
@@ -32,8 +33,18 @@ const Shape& shape_of(ElementShape shape) {
             {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
             {{0, 1, 2, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 2, 3, -1}}},
       Shape{8,
-            {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5},
-             {2, 6}, {3, 7}},
+            {{0, 1},
+             {1, 2},
+             {2, 3},
+             {3, 0},
+             {4, 5},
+             {5, 6},
+             {6, 7},
+             {7, 4},
+             {0, 4},
+             {1, 5},
+             {2, 6},
+             {3, 7}},
             {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
       Shape{6,
             {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
@@ -180,8 +191,8 @@ SimplexQuality tetrahedron_quality(const Vec3& a, const Vec3& b, const Vec3& c, 
   const double circum_radius = std::sqrt(std::max(product, 0.0)) / (24.0 * volume);
   // Jacobian of the map from the regular tetrahedron.
   Eigen::Matrix3d regular;
-  regular << 1.0, 0.5, 0.5,                                   //
-      0.0, std::sqrt(3.0) / 2.0, std::sqrt(3.0) / 6.0,        //
+  regular << 1.0, 0.5, 0.5,                             //
+      0.0, std::sqrt(3.0) / 2.0, std::sqrt(3.0) / 6.0,  //
       0.0, 0.0, std::sqrt(2.0 / 3.0);
   const Eigen::Matrix3d jacobian = edges * regular.inverse();
   const double condition = jacobian.norm() * jacobian.inverse().norm();
@@ -228,8 +239,9 @@ std::string significant(double value) {
 
 /// Columns that count bytes of UTF-8 wrongly would not line up.
 std::size_t displayed_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
 }
 
 }  // namespace
@@ -258,9 +270,9 @@ MeshReport make_report(const ReportMesh& mesh, const SizeAsked& size_asked) {
 }
 
 std::string report_table(const std::vector<NamedReport>& reports) {
-  std::vector<std::vector<std::string>> rows = {
-      {"mesh", "elements", "size min", "max", "ratio max", "99 %", "length/size", "good", "> 2",
-       "gamma min", "mean", "SICN min", "mean"}};
+  std::vector<std::vector<std::string>> rows = {{"mesh", "elements", "size min", "max", "ratio max",
+                                                 "99 %", "length/size", "good", "> 2", "gamma min",
+                                                 "mean", "SICN min", "mean"}};
   for (const auto& [name, r] : reports) {
     rows.push_back({name, grouped_digits(r.elements), significant(r.smallest_size),
                     significant(r.largest_size), rounded(r.ratio_max, 2), rounded(r.ratio_99, 2),

@@ -9,17 +9,17 @@
 
 namespace meshgrow {
 
-/// As many threads as OMP_NUM_THREADS says, else as there are processors. OpenMP's own default is not
-/// asked: Gmsh sets it to 1 for the whole process.
+/// As many threads as OMP_NUM_THREADS says, else as there are processors. OpenMP's own default is
+/// not asked: Gmsh sets it to 1 for the whole process.
 inline int default_threads() {
   const char* wanted = std::getenv("OMP_NUM_THREADS");
   const int count = wanted == nullptr ? 0 : std::atoi(wanted);
   return count > 0 ? count : omp_get_num_procs();
 }
 
-/// Runs body(i) for i in [0, count) on `threads` OpenMP threads (0: default_threads()), in any order.
-/// The first exception of a body is thrown again after all threads have come to rest. `finished(n)`
-/// is called on the calling thread only, with the number of bodies done so far.
+/// Runs body(i) for i in [0, count) on `threads` OpenMP threads (0: default_threads()), in any
+/// order. The first exception of a body is thrown again after all threads have come to rest.
+/// `finished(n)` is called on the calling thread only, with the number of bodies done so far.
 template <typename Body, typename Finished>
 void parallel_for(std::size_t count, int threads, Body body, Finished finished) {
   std::exception_ptr failure;

@@ -133,15 +133,13 @@ void SizeField::build_group(std::size_t index) {
     grid_options.tolerance = options_.tolerance;
     grid_options.threads = options_.threads;
     if (options_.progress) {
-      const std::string what = "Background grid " + std::to_string(index + 1) + " of " +
-                               std::to_string(groups_.size()) + " (" +
-                               entity_names({groups_[index].entities.rbegin(),
-                                             groups_[index].entities.rend()}, 2) +
-                               ")";
+      const std::string what =
+          "Background grid " + std::to_string(index + 1) + " of " + std::to_string(groups_.size()) +
+          " (" +
+          entity_names({groups_[index].entities.rbegin(), groups_[index].entities.rend()}, 2) + ")";
       grid_options.progress = [this, what](double done) { options_.progress(what, done); };
     }
-    built.grid =
-        std::make_unique<BackgroundGrid>(built.tree, built.size_limit, box, grid_options);
+    built.grid = std::make_unique<BackgroundGrid>(built.tree, built.size_limit, box, grid_options);
   }
   Group& group = groups_[index];
   group.size_limit = built.size_limit;
@@ -208,8 +206,8 @@ std::string SizeField::summary() const {
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     const SizeFunction& function = functions_[i];
     text << function_name(i) << ": from " << entity_names(function.sources) << " into "
-         << entity_names(function.attachments) << ", growth " << shortest(function.growth_rate) << ", limit "
-         << shortest(function.size_limit);
+         << entity_names(function.attachments) << ", growth " << shortest(function.growth_rate)
+         << ", limit " << shortest(function.size_limit);
     if (function.kind == Kind::fixed) {
       text << ", size " << shortest(function.start_size);
     }
@@ -224,11 +222,10 @@ std::string SizeField::summary() const {
     text << ", " << grouped_digits(group.facets) << " facets";
     if (group.has_grid) {
       const BackgroundGrid::Statistics& grid = group.grid;
-      text << ", grid of "
-           << grouped_digits(grid.interpolated_leaves + grid.exact_leaves) << " cells ("
-           << grouped_digits(grid.exact_leaves) << " exact), depth " << grid.depth << ", "
-           << rounded(static_cast<double>(grid.bytes + group.tree_bytes) / 1e6, 1) << " MB, "
-           << rounded(grid.seconds, 2) << " s";
+      text << ", grid of " << grouped_digits(grid.interpolated_leaves + grid.exact_leaves)
+           << " cells (" << grouped_digits(grid.exact_leaves) << " exact), depth " << grid.depth
+           << ", " << rounded(static_cast<double>(grid.bytes + group.tree_bytes) / 1e6, 1)
+           << " MB, " << rounded(grid.seconds, 2) << " s";
     }
     text << '\n';
   }

@@ -41,7 +41,8 @@ class SizeField {
 
   explicit SizeField(Topology topology, FieldOptions options = {});
 
-  /// Checks and adds a function; returns its index. Throws Error and adds nothing if it is unusable.
+  /// Checks and adds a function; returns its index. Throws Error and adds nothing if it is
+  /// unusable.
   std::size_t add(SizeFunction function);
 
   const std::vector<SizeFunction>& functions() const { return functions_; }
@@ -59,8 +60,9 @@ class SizeField {
   /// False while the sources of the function have given it no facet.
   bool is_effective(std::size_t function) const { return !facets_[function].empty(); }
 
-  /// Brings trees and grids of the groups of these entities up to date (of all groups, if `entities`
-  /// is empty). Groups not built since a change answer as before it; never built ones, `no_size`.
+  /// Brings trees and grids of the groups of these entities up to date (of all groups, if
+  /// `entities` is empty). Groups not built since a change answer as before it; never built ones,
+  /// `no_size`.
   void build(const std::vector<Entity>& entities = {});
 
   /// True if some function acts on the entity: attached itself, or below an attachment.

@@ -28,8 +28,7 @@ void check_entities(const std::vector<Entity>& entities, int lowest_dim, int hig
   for (const Entity& entity : entities) {
     if (entity.dim < lowest_dim || entity.dim > highest_dim) {
       throw Error(name + ": " + entity_name(entity) + " cannot be its " + role + ": give " +
-                  dimension_name(lowest_dim) + " to " + dimension_name(highest_dim) +
-                  " entities.");
+                  dimension_name(lowest_dim) + " to " + dimension_name(highest_dim) + " entities.");
     }
     if (!topology.contains(entity)) {
       throw Error(name + ": its " + role + " " + entity_name(entity) +

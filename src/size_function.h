@@ -25,9 +25,9 @@ struct SizeFunction {
   Kind kind = Kind::mesh;
   std::vector<Entity> sources;      ///< mesh: curves, surfaces; fixed: also points and volumes
   std::vector<Entity> attachments;  ///< curves, surfaces, volumes; acts on their boundaries as well
-  double growth_rate = 1.2;         ///< each layer of elements is so many times the one before, ≥ 1
-  double size_limit = 0.0;          ///< largest size asked for, model units, > 0
-  double start_size = 0.0;          ///< fixed: size on the sources, model units, > 0
+  double growth_rate = 1.2;  ///< each layer of elements is so many times the one before, ≥ 1
+  double size_limit = 0.0;   ///< largest size asked for, model units, > 0
+  double start_size = 0.0;   ///< fixed: size on the sources, model units, > 0
   QuadSize quad_size = QuadSize::triangles;  ///< mesh: how quadrilaterals are sized
 };
 

@@ -91,8 +91,9 @@ class Parser {
   std::string parse_word() {
     skip_space();
     std::string word;
-    while (position_ < text_.size() &&
-           (std::isalpha(static_cast<unsigned char>(text_[position_])) || text_[position_] == '_')) {
+    while (
+        position_ < text_.size() &&
+        (std::isalpha(static_cast<unsigned char>(text_[position_])) || text_[position_] == '_')) {
       word += text_[position_++];
     }
     return word;
@@ -212,8 +213,9 @@ class Parser {
     skip_space();
     const bool quoted = accept('"');
     std::string name;
-    while (position_ < text_.size() &&
-           (quoted ? text_[position_] != '"' : text_[position_] != ',' && text_[position_] != '}')) {
+    while (
+        position_ < text_.size() &&
+        (quoted ? text_[position_] != '"' : text_[position_] != ',' && text_[position_] != '}')) {
       name += text_[position_++];
     }
     if (quoted) {
@@ -243,8 +245,8 @@ class Parser {
       }
     }
     if (!found) {
-      throw Error("\"" + text_ + "\": the model has no Physical " +
-                  dimension_name(dim) + " \"" + name + "\": check its name and dimension.");
+      throw Error("\"" + text_ + "\": the model has no Physical " + dimension_name(dim) + " \"" +
+                  name + "\": check its name and dimension.");
     }
   }
 

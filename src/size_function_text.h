@@ -14,8 +14,8 @@ namespace meshgrow {
 ///     mesh  source Surface{7}   attach Volume{2}                 growth 1.2 limit 2
 ///     fixed source Curve{1,4:6} attach Physical Surface{"inlet"} size 0.1 growth 1.2 limit 2
 ///
-/// Entities are written as in .geo: Point, Curve (or Line), Surface, Volume with tags, ranges a:b, or
-/// : for all; Physical before them takes physical tags and names (quotes may be left out). After
+/// Entities are written as in .geo: Point, Curve (or Line), Surface, Volume with tags, ranges a:b,
+/// or : for all; Physical before them takes physical tags and names (quotes may be left out). After
 /// `source` and `attach` several such selections may stand, separated by commas.
 ///
 /// Throws Error that tells the position (counted from 1) and what was expected there, and for

@@ -27,7 +27,8 @@ using SizedFacets = std::vector<SizedFacet>;
 
 /// How a quadrilateral element is sized (DESIGN.md, section 2).
 enum class QuadSize {
-  triangles,  ///< each of its two triangles by its own three sides, the diagonal included (the paper)
+  triangles,  ///< each of its two triangles by its own three sides, the diagonal included (the
+              ///< paper)
   sides       ///< both triangles by the mean of the quad's four sides
 };
 

@@ -8,8 +8,8 @@
 
 namespace meshgrow {
 
-/// Volumes that lie in cavities of `volume`: those whose faces, but for faces between themselves, all
-/// bound `volume` as well.
+/// Volumes that lie in cavities of `volume`: those whose faces, but for faces between themselves,
+/// all bound `volume` as well.
 std::set<Entity> enclosed_volumes(const Entity& volume, const Topology& topology);
 
 /// Splits volumes into passes of Gmsh: a pass holds only volumes that are in `attached`, or only

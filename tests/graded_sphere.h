@@ -15,13 +15,11 @@ inline std::vector<std::array<Vec3, 3>> graded_sphere(std::size_t triangle_count
   const double pi = std::acos(-1.0);
   const auto rings_at = [&](double scale) {
     std::vector<std::vector<Vec3>> rings;
-    const auto size = [&](double theta) {
-      return scale * std::pow(ratio, theta / pi);
-    };
+    const auto size = [&](double theta) { return scale * std::pow(ratio, theta / pi); };
     double theta = 0.5 * size(0.0);
     while (theta < pi - 0.5 * size(theta)) {
-      const auto count =
-          std::max<std::size_t>(6, static_cast<std::size_t>(2.0 * pi * std::sin(theta) / size(theta)));
+      const auto count = std::max<std::size_t>(
+          6, static_cast<std::size_t>(2.0 * pi * std::sin(theta) / size(theta)));
       std::vector<Vec3> ring;
       for (std::size_t i = 0; i < count; ++i) {
         const double phi = 2.0 * pi * static_cast<double>(i) / static_cast<double>(count);

@@ -159,7 +159,8 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
   if (output.empty()) {
     output = fs::path(arguments.model).replace_extension(".msh");
   }
-  if (fs::exists(output) && fs::exists(arguments.model) && fs::equivalent(output, arguments.model)) {
+  if (fs::exists(output) && fs::exists(arguments.model) &&
+      fs::equivalent(output, arguments.model)) {
     throw Error("The mesh would be written over the model " + arguments.model +
                 ": name another output with -o.");
   }
@@ -181,7 +182,8 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
     const std::string measured = take_text(meshgrow_report_json(dim, nullptr, 0, field.get()));
     const nlohmann::json row = {{"name", output.filename().string()},
                                 {"report", nlohmann::json::parse(measured)}};
-    std::cout << '\n' << take_text(meshgrow_report_table(nlohmann::json::array({row}).dump().c_str()));
+    std::cout << '\n'
+              << take_text(meshgrow_report_table(nlohmann::json::array({row}).dump().c_str()));
   }
   std::cout << "\nWrote " << output.string() << ". To look at it: gmsh " << output.string()
             << std::endl;

@@ -19,13 +19,15 @@ int main(int argc, char** argv) {
 
   meshgrow::cli::FieldArguments field_arguments;
   const auto add_field_options = [&field_arguments](CLI::App* command) {
-    command->add_option("--size-function", field_arguments.size_functions,
-                        "A size function, one line of text; may be given several times")
+    command
+        ->add_option("--size-function", field_arguments.size_functions,
+                     "A size function, one line of text; may be given several times")
         ->allow_extra_args(false);
     command->add_option("--size-functions", field_arguments.file,
                         "A file of size functions, one a line; # begins a comment");
-    command->add_option("--tolerance", field_arguments.tolerance,
-                        "Relative tolerance of the background grid")
+    command
+        ->add_option("--tolerance", field_arguments.tolerance,
+                     "Relative tolerance of the background grid")
         ->capture_default_str();
     command->add_flag("--exact", field_arguments.exact, "Exact sizes, no background grid");
     command->add_flag("--strict", field_arguments.strict,
@@ -48,7 +50,9 @@ int main(int argc, char** argv) {
   meshgrow::cli::ReportArguments report_arguments;
   CLI::App* report = app.add_subcommand("report", "Gradation and quality of meshes, as a table");
   report->add_option("meshes", report_arguments.meshes, "Mesh files")->required();
-  report->add_option("--dim", report_arguments.dim, "2 or 3")->capture_default_str()->check(CLI::Range(2, 3));
+  report->add_option("--dim", report_arguments.dim, "2 or 3")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 3));
   report->add_option("--entities", report_arguments.entities,
                      "Only these, for example 'Volume{2,3}'");
   report->add_flag("--json", report_arguments.json, "JSON instead of a table");

@@ -30,8 +30,7 @@ DroppedFacets append_mesh_start_sizes(const FacetedSource& source, QuadSize quad
   }
   for (const auto& quad : source.quads) {
     for (const Facet& half : split_quad(quad)) {
-      const double size =
-          quad_size == QuadSize::sides ? mean_of_sides(quad) : mean_of_sides(half);
+      const double size = quad_size == QuadSize::sides ? mean_of_sides(quad) : mean_of_sides(half);
       append_facet(half, size, slope, facets, dropped);
     }
   }

@@ -1,5 +1,5 @@
-// A user's C++ program that is linked to a libgmsh of its own and meshes with meshgrow's C interface:
-// one libmeshgrow serves it as it serves Python and the program.
+// A user's C++ program that is linked to a libgmsh of its own and meshes with meshgrow's C
+// interface: one libmeshgrow serves it as it serves Python and the program.
 
 #include <gmsh.h>
 
@@ -33,8 +33,9 @@ int main() {
 
   meshgrow_field* field = meshgrow_field_create();
   expect(field != nullptr, "field of the current model");
-  expect(meshgrow_field_add(field, "fixed source Surface{1} attach Volume{1} size 0.05 growth 1.3 "
-                                   "limit 0.5") == 0,
+  expect(meshgrow_field_add(field,
+                            "fixed source Surface{1} attach Volume{1} size 0.05 growth 1.3 "
+                            "limit 0.5") == 0,
          "fixed size function by text");
   const std::vector<double> points = {0, 0.5, 0.5, 1, 0.5, 0.5};
   std::vector<double> sizes(2);
