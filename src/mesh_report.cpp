@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -105,10 +104,11 @@ void measure_ratios(const ReportMesh& mesh, const std::vector<double>& sizes, Me
   }
   std::sort(sides.begin(), sides.end());
   std::vector<double> ratios;
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    if (sides[i].first == sides[i - 1].first) {
-      const double a = sizes[sides[i - 1].second];
-      const double b = sizes[sides[i].second];
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    // Three and more elements may meet at an edge of a surface mesh: each pair counts.
+    for (std::size_t j = i + 1; j < sides.size() && sides[j].first == sides[i].first; ++j) {
+      const double a = sizes[sides[i].second];
+      const double b = sizes[sides[j].second];
       ratios.push_back(std::max(a, b) / std::min(a, b));
     }
   }
@@ -232,9 +232,7 @@ std::string significant(double value) {
   if (std::isnan(value)) {
     return "-";
   }
-  std::ostringstream text;
-  text << std::setprecision(3) << value;
-  return text.str();
+  return shortest(value, 3);
 }
 
 /// Columns that count bytes of UTF-8 wrongly would not line up.

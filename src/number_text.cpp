@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <locale>
 #include <sstream>
 
 namespace meshgrow {
@@ -19,13 +20,15 @@ std::string rounded(double value, int decimals) {
     return "-";
   }
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(decimals) << value;
   return text.str();
 }
 
-std::string shortest(double value) {
+std::string shortest(double value, int digits) {
   std::ostringstream text;
-  text << value;
+  text.imbue(std::locale::classic());
+  text << std::setprecision(digits) << value;
   return text.str();
 }
 

@@ -33,7 +33,13 @@ std::size_t SizeField::add(SizeFunction function) {
   validate(function, name_of(function, functions_.size()), topology_);
   functions_.push_back(std::move(function));
   facets_.emplace_back();
-  regroup();
+  try {
+    regroup();
+  } catch (...) {
+    functions_.pop_back();
+    facets_.pop_back();
+    throw;
+  }
   return functions_.size() - 1;
 }
 
@@ -52,17 +58,29 @@ void SizeField::regroup() {
     }
   }
   std::map<std::vector<Action>, std::size_t> index_of;
-  groups_.clear();
-  group_of_.clear();
+  std::vector<Group> groups;
+  std::unordered_map<Entity, std::size_t, EntityHash> group_of;
   for (const auto& [entity, actions] : actions_on) {
-    const auto [found, is_new] = index_of.emplace(actions, groups_.size());
+    const auto [found, is_new] = index_of.emplace(actions, groups.size());
     if (is_new) {
-      groups_.emplace_back();
-      groups_.back().actions = actions;
+      groups.emplace_back();
+      groups.back().actions = actions;
     }
-    groups_[found->second].entities.push_back(entity);
-    group_of_[entity] = found->second;
+    groups[found->second].entities.push_back(entity);
+    group_of[entity] = found->second;
   }
+  // Groups on which the same functions act as before keep what is built.
+  for (Group& old : groups_) {
+    const auto found = index_of.find(old.actions);
+    if (found != index_of.end()) {
+      Group& group = groups[found->second];
+      old.changed = old.changed || old.entities != group.entities;
+      old.entities = std::move(group.entities);
+      group = std::move(old);
+    }
+  }
+  groups_ = std::move(groups);
+  group_of_ = std::move(group_of);
 }
 
 DroppedFacets SizeField::set_sources(std::size_t function,

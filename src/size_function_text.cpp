@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
+#include <system_error>
 
 #include "error.h"
 
@@ -101,11 +102,13 @@ class Parser {
 
   double parse_number(const std::string& expected) {
     skip_space();
-    const char* begin = text_.c_str() + position_;
-    char* end = nullptr;
-    const double value = std::strtod(begin, &end);
-    require(end != begin, expected);
-    position_ += static_cast<std::size_t>(end - begin);
+    // Not strtod: a decimal point is a point in every locale.
+    const std::size_t sign = text_.compare(position_, 1, "+") == 0 ? 1 : 0;
+    const char* begin = text_.data() + position_ + sign;
+    double value = 0.0;
+    const auto [end, problem] = std::from_chars(begin, text_.data() + text_.size(), value);
+    require(problem == std::errc(), expected);
+    position_ += sign + static_cast<std::size_t>(end - begin);
     return value;
   }
 
@@ -176,6 +179,7 @@ class Parser {
   }
 
   int parse_tag() {
+    skip_space();
     const std::size_t begin = position_;
     const double value = parse_number("a tag or ':'");
     if (!(std::abs(value) <= std::numeric_limits<int>::max()) || value != std::floor(value)) {

@@ -1,0 +1,78 @@
+#include "grid_cell.h"
+
+#include <gtest/gtest.h>
+
+#include "random_facets.h"
+
+namespace meshgrow {
+namespace {
+
+double linear(const Vec3& p) { return 3.0 + 2.0 * p.x() - 5.0 * p.y() + 0.5 * p.z(); }
+
+GridCell cell_of_linear_values() {
+  GridCell cell;
+  cell.centre = Vec3(1, 2, 3);
+  cell.half_edge = 0.25;
+  cell.depth = 4;
+  for (int i = 0; i < 8; ++i) {
+    cell.corner_values[i] = linear(cell.corner(i));
+  }
+  return cell;
+}
+
+TEST(GridCell, CornersFollowTheBits) {
+  const GridCell cell = cell_of_linear_values();
+  EXPECT_EQ(cell.corner(0), Vec3(0.75, 1.75, 2.75));
+  EXPECT_EQ(cell.corner(1), Vec3(1.25, 1.75, 2.75));
+  EXPECT_EQ(cell.corner(2), Vec3(0.75, 2.25, 2.75));
+  EXPECT_EQ(cell.corner(4), Vec3(0.75, 1.75, 3.25));
+  EXPECT_EQ(cell.corner(7), Vec3(1.25, 2.25, 3.25));
+}
+
+TEST(GridCell, LatticeContainsTheCorners) {
+  const GridCell cell = cell_of_linear_values();
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(lattice_point(cell, lattice_index_of_corner(i)), cell.corner(i));
+  }
+  EXPECT_EQ(lattice_point(cell, 13), cell.centre);
+  EXPECT_EQ(lattice_point(cell, 1), Vec3(1.0, 1.75, 2.75));
+}
+
+TEST(GridCell, ChildrenShareTheLattice) {
+  const GridCell cell = cell_of_linear_values();
+  Lattice lattice;
+  for (int i = 0; i < 27; ++i) {
+    lattice[i] = linear(lattice_point(cell, i));
+  }
+  for (int child = 0; child < 8; ++child) {
+    const GridCell half = child_cell(cell, child, lattice);
+    EXPECT_EQ(half.half_edge, 0.125);
+    EXPECT_EQ(half.depth, 5);
+    EXPECT_EQ(half.corner(child), cell.corner(child));
+    EXPECT_EQ(half.corner(7 - child), cell.centre);
+    for (int i = 0; i < 8; ++i) {
+      EXPECT_EQ(half.corner_values[i], linear(half.corner(i))) << child << ", corner " << i;
+    }
+  }
+}
+
+TEST(GridCell, TrilinearInterpolationGivesCornersAndLinearFunctions) {
+  const GridCell cell = cell_of_linear_values();
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_DOUBLE_EQ(trilinear(cell.corner_values, i & 1 ? 1 : 0, i & 2 ? 1 : 0, i & 4 ? 1 : 0),
+                     cell.corner_values[i]);
+  }
+  test::Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 local = test::random_in_box(random, Box(Vec3::Zero(), Vec3::Ones()));
+    const Vec3 p = cell.corner(0) + 2.0 * cell.half_edge * local;
+    ASSERT_NEAR(trilinear(cell.corner_values, local.x(), local.y(), local.z()), linear(p), 1e-13)
+        << "seed 1";
+  }
+  // Not linear in the diagonal: the product term.
+  const std::array<double, 8> xyz = {0, 0, 0, 0, 0, 0, 0, 8};
+  EXPECT_DOUBLE_EQ(trilinear(xyz, 0.5, 0.5, 0.5), 1.0);
+}
+
+}  // namespace
+}  // namespace meshgrow

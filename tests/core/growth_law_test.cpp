@@ -1,0 +1,40 @@
+#include "growth_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace meshgrow {
+namespace {
+
+TEST(GrowthLaw, ClosedFormEqualsThePapersMarchingSum) {
+  for (const double growth_rate : {1.0, 1.0 + 1e-9, 1.0001, 1.05, 1.2, 1.5, 2.0, 3.7, 5.0}) {
+    for (double start_size = 1e-6; start_size < 2e6; start_size *= 10.0) {
+      for (double ratio = 1e-6; ratio < 2e6; ratio *= 3.1) {
+        const double distance = ratio * start_size;
+        const double marched = marched_size(start_size, growth_rate, distance);
+        EXPECT_NEAR(grown_size(start_size, growth_rate, distance), marched, 1e-12 * marched)
+            << "g " << growth_rate << ", S0 " << start_size << ", R " << distance;
+      }
+    }
+  }
+}
+
+TEST(GrowthLaw, LayersGrowByTheRate) {
+  const double growth_rate = 1.3;
+  double distance = 0.0;
+  double layer = 0.2;
+  for (int n = 0; n < 40; ++n) {
+    EXPECT_NEAR(grown_size(0.2, growth_rate, distance), layer, 1e-12 * layer);
+    layer *= growth_rate;
+    distance += layer;
+  }
+}
+
+TEST(GrowthLaw, RateOneKeepsTheSize) {
+  EXPECT_EQ(growth_slope(1.0), 0.0);
+  EXPECT_EQ(grown_size(0.7, 1.0, 1e9), 0.7);
+}
+
+}  // namespace
+}  // namespace meshgrow
