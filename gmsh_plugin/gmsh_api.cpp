@@ -295,6 +295,16 @@ ElementType element_type(int type) {
   return result;
 }
 
+int linear_type(const ElementType& type) {
+  std::string family = type.name.substr(0, type.name.find(' '));
+  if (family == "Quadrilateral") {
+    family = "Quadrangle";  // Gmsh's two words for it
+  }
+  return family == "Point"
+             ? 15
+             : library().call_int("gmshModelMeshGetElementType", family.c_str(), 1, 0);
+}
+
 void clear_mesh(const std::vector<Entity>& entities) {
   std::vector<int> dim_tags = to_dim_tags(entities);
   library().call("gmshModelMeshClear", dim_tags.data(), dim_tags.size());

@@ -85,6 +85,8 @@ struct ElementType {
   int corner_count = 0;
 };
 ElementType element_type(int type);
+/// The type of first order with the same corners.
+int linear_type(const ElementType& type);
 
 /// Deletes the meshes of these entities.
 void clear_mesh(const std::vector<Entity>& entities);

@@ -1,5 +1,6 @@
 #include "model_field.h"
 
+#include <algorithm>
 #include <chrono>
 #include <numeric>
 
@@ -116,8 +117,19 @@ void ModelField::report_unmeshed(std::size_t function, bool throw_if_strict) {
   }
 }
 
+void ModelField::check_model() const {
+  std::vector<Entity> now = gmsh::entities();
+  std::sort(now.begin(), now.end());
+  if (now != field_.topology().entities()) {
+    throw Error(
+        "The model has other entities than when this size field was made: make a new field "
+        "after changing the geometry.");
+  }
+}
+
 void ModelField::refresh() {
   const CurrentModel current(model_);
+  check_model();
   std::vector<std::size_t> all(field_.functions().size());
   std::iota(all.begin(), all.end(), 0U);
   read_sources(all);
@@ -145,6 +157,8 @@ void ModelField::register_callback() {
 }
 
 void ModelField::generate(int dim) {
+  const CurrentModel current(model_);
+  check_model();
   const bool was_registered = is_registered();
   unregister_callback();
   const auto register_again = [&] {
@@ -160,6 +174,12 @@ void ModelField::generate(int dim) {
   }
   register_again();
   sources_read_ = true;
+  const double element_order = gmsh::option("Mesh.ElementOrder");
+  if (element_order > 1.0) {
+    GmshState state;
+    state.set_option("Mesh.Renumber", 0.0);
+    gmsh::set_order(static_cast<int>(element_order));
+  }
 }
 
 }  // namespace meshgrow

@@ -61,6 +61,9 @@ class ModelField {
  private:
   friend class OrderedMesher;
 
+  /// Throws Error if entities came or went since the field was made.
+  void check_model() const;
+
   /// Reads the sources of the functions that act on these entities, as far as they changed.
   void read_sources(const std::vector<std::size_t>& functions);
   void warn_or_throw(const std::string& sentence) const;

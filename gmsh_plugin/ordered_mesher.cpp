@@ -16,16 +16,6 @@ OrderedMesher::OrderedMesher(ModelField& model_field)
       all_(field_.topology().entities()),
       premeshed_(field_.topology()) {}
 
-void OrderedMesher::check_model() const {
-  std::vector<Entity> now = gmsh::entities();
-  std::sort(now.begin(), now.end());
-  if (now != all_) {
-    throw Error(
-        "The model has other entities than when this size field was made: make a new field "
-        "after changing the geometry.");
-  }
-}
-
 void OrderedMesher::check_options() const {
   if (gmsh::option("Mesh.SubdivisionAlgorithm") != 0.0) {
     throw Error(
@@ -38,9 +28,7 @@ void OrderedMesher::generate(int dim) {
   if (dim < 1 || dim > 3) {
     throw Error("Cannot mesh dimension " + std::to_string(dim) + ": give 1, 2 or 3.");
   }
-  check_model();
   check_options();
-  const double element_order = gmsh::option("Mesh.ElementOrder");
   state_.set_option("Mesh.MeshOnlyVisible", 1.0);
   state_.set_option("Mesh.MeshOnlyEmpty", 0.0);
   state_.set_option("Mesh.Renumber", 0.0);
@@ -66,11 +54,9 @@ void OrderedMesher::generate(int dim) {
       read_new_sources();
     } catch (...) {
       premeshed_.put_back_missing();
+      premeshed_.put_back_changed();
       throw;
     }
-  }
-  if (element_order > 1.0) {
-    gmsh::set_order(static_cast<int>(element_order));
   }
 }
 

@@ -31,7 +31,6 @@ class OrderedMesher {
   void pass(const std::vector<Entity>& entities, bool attached);
   void read_new_sources();
   bool acts_effectively(const Entity& entity) const;
-  void check_model() const;
   void check_options() const;
   void check_result(const std::vector<Entity>& entities, const std::string& pass_name) const;
   void report_unmeshed_sources(const std::vector<Entity>& entities);

@@ -10,7 +10,7 @@ PremeshedStore::PremeshedStore(const Topology& topology) : topology_(topology) {
 
 void PremeshedStore::keep(const std::vector<Entity>& entities) {
   for (const Entity& entity : entities) {
-    if (entity.dim > 0 && gmsh::has_elements(entity)) {
+    if (gmsh::has_elements(entity)) {
       meshes_[entity] = read(entity);
     }
   }
@@ -18,6 +18,51 @@ void PremeshedStore::keep(const std::vector<Entity>& entities) {
 
 PremeshedStore::Mesh PremeshedStore::read(const Entity& entity) {
   return {gmsh::nodes(entity), gmsh::elements(entity)};
+}
+
+PremeshedStore::Mesh PremeshedStore::first_order(const Mesh& mesh) {
+  Mesh result;
+  std::set<std::size_t> corners;
+  for (const gmsh::Elements& block : mesh.elements) {
+    const gmsh::ElementType type = gmsh::element_type(block.type);
+    gmsh::Elements linear;
+    linear.type = gmsh::linear_type(type);
+    const auto step = static_cast<std::size_t>(type.node_count);
+    for (std::size_t first = 0; first + step <= block.node_tags.size(); first += step) {
+      const auto begin = block.node_tags.begin() + static_cast<std::ptrdiff_t>(first);
+      linear.node_tags.insert(linear.node_tags.end(), begin, begin + type.corner_count);
+    }
+    corners.insert(linear.node_tags.begin(), linear.node_tags.end());
+    result.elements.push_back(std::move(linear));
+  }
+  const gmsh::Nodes& nodes = mesh.nodes;
+  const auto copy = [](const std::vector<double>& from, std::size_t i, std::size_t width,
+                       std::vector<double>& to) {
+    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(i * width);
+    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+  };
+  const std::size_t parameters =
+      nodes.tags.empty() ? 0 : nodes.parametric_coordinates.size() / nodes.tags.size();
+  for (std::size_t i = 0; i < nodes.tags.size(); ++i) {
+    if (corners.count(nodes.tags[i]) > 0) {
+      result.nodes.tags.push_back(nodes.tags[i]);
+      copy(nodes.coordinates, i, 3, result.nodes.coordinates);
+      copy(nodes.parametric_coordinates, i, parameters, result.nodes.parametric_coordinates);
+    }
+  }
+  return result;
+}
+
+std::optional<Entity> PremeshedStore::any_of_higher_order() const {
+  for (const auto& [entity, mesh] : meshes_) {
+    for (const gmsh::Elements& block : mesh.elements) {
+      const gmsh::ElementType type = gmsh::element_type(block.type);
+      if (type.node_count > type.corner_count) {
+        return entity;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 void PremeshedStore::write(const Entity& entity, const Mesh& mesh) {
@@ -47,7 +92,7 @@ bool PremeshedStore::same(const Mesh& a, const Mesh& b) {
 void PremeshedStore::put_back_missing() const {
   for (const auto& [entity, mesh] : meshes_) {
     if (!gmsh::has_elements(entity)) {
-      write(entity, mesh);
+      write(entity, first_order(mesh));
     }
   }
 }
@@ -70,7 +115,7 @@ void PremeshedStore::put_back_changed() const {
   // Gmsh clears no mesh on which another one stands: take those off, highest dimension first.
   std::map<Entity, Mesh> laid_again;
   for (const Entity& entity : topology_.entities()) {
-    if (entity.dim == 0 || !gmsh::has_elements(entity)) {
+    if (!gmsh::has_elements(entity)) {
       continue;
     }
     const std::set<Entity> closure = topology_.closure({entity});

@@ -2,6 +2,7 @@
 #define MESHGROW_PREMESHED_STORE_H
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "gmsh_api.h"
@@ -17,7 +18,7 @@ namespace meshgrow {
 /// elements. Element tags are not.
 class PremeshedStore {
  public:
-  /// Copies the meshes of all curves, surfaces and volumes of the model that have elements.
+  /// Copies the meshes of all entities of the model that have elements.
   explicit PremeshedStore(const Topology& topology);
 
   /// Copies the meshes of these entities as well.
@@ -26,8 +27,12 @@ class PremeshedStore {
   bool contains(const Entity& entity) const { return meshes_.count(entity) > 0; }
   std::size_t size() const { return meshes_.size(); }
 
-  /// Puts back every stored mesh that is gone entirely, as after a pass over curves.
+  /// Puts back every stored mesh that is gone entirely, as after a pass over curves. First order
+  /// only: Gmsh has made everything first order at that time.
   void put_back_missing() const;
+
+  /// A stored entity with elements of second or higher order, if there is one.
+  std::optional<Entity> any_of_higher_order() const;
 
   /// Puts back every stored mesh that differs in any way; meshes on top of it are taken off and
   /// laid on again. Throws Error, naming the entities, if one still differs afterwards.
@@ -42,6 +47,7 @@ class PremeshedStore {
     std::vector<gmsh::Elements> elements;
   };
   static Mesh read(const Entity& entity);
+  static Mesh first_order(const Mesh& mesh);
   static void write(const Entity& entity, const Mesh& mesh);
   static bool same(const Mesh& a, const Mesh& b);
 

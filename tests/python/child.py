@@ -1,0 +1,17 @@
+"""Python code in a process of its own."""
+
+import os
+import subprocess
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def run_child(code, **environment):
+    """Lines that the code prints; it may import the helpers. Fails if it does not end with 0."""
+    path = os.pathsep.join([HERE, os.environ.get("PYTHONPATH", "")])
+    child = subprocess.run([sys.executable, "-c", code],
+                           env=dict(os.environ, PYTHONPATH=path, **environment),
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
+    assert child.returncode == 0, "exit code %d\n%s" % (child.returncode, child.stderr[-2000:])
+    return child.stdout.splitlines()

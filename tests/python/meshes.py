@@ -1,0 +1,136 @@
+"""Makes, reads and compares meshes through Gmsh's API."""
+
+import contextlib
+
+import gmsh
+import numpy as np
+
+CORNERS = {"Line": 2, "Triangle": 3, "Quadrilateral": 4, "Quadrangle": 4, "Tetrahedron": 4,
+           "Pyramid": 5, "Prism": 6, "Hexahedron": 8}
+
+
+def boundary(entities):
+    return gmsh.model.getBoundary(entities, combined=False, oriented=False)
+
+
+def closure(entities):
+    """The entities and all that bounds them."""
+    found, fresh = set(), set(entities)
+    while fresh:
+        found |= fresh
+        fresh = {low for e in fresh if e[0] > 0 for low in boundary([e])} - found
+    return sorted(found)
+
+
+@contextlib.contextmanager
+def options(**values):
+    """Options, with _ for the dot, for the life of a block."""
+    names = {name: name.replace("_", ".", 1) for name in values}
+    before = {name: gmsh.option.getNumber(names[name]) for name in values}
+    for name, value in values.items():
+        gmsh.option.setNumber(names[name], value)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            gmsh.option.setNumber(names[name], value)
+
+
+@contextlib.contextmanager
+def size_callback(size_at):
+    """`size_at(x, y, z)` as Gmsh's size callback, whatever the version passes besides."""
+    gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, *_: size_at(x, y, z))
+    try:
+        yield
+    finally:
+        gmsh.model.mesh.removeSizeCallback()
+
+
+def premesh(entities, size):
+    """Meshes exactly these entities with what bounds them, by `size` or `size(x, y, z)`."""
+    size_at = size if callable(size) else lambda *_: size
+    wanted = closure(entities)
+    everything = gmsh.model.getEntities()
+    with options(Mesh_MeshOnlyVisible=1, Mesh_Renumber=0), size_callback(size_at):
+        for dim in range(1, 4):
+            of_dim = [e for e in wanted if e[0] == dim]
+            if of_dim:
+                gmsh.model.setVisibility(everything, 0)
+                gmsh.model.setVisibility(of_dim, 1)
+                gmsh.model.mesh.generate(dim)
+        gmsh.model.setVisibility(everything, 1)
+
+
+def snapshot(entity):
+    """All that is promised for a premeshed entity: node tags, coordinates to the bit, elements."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes(*entity)
+    types, _, nodes = gmsh.model.mesh.getElements(*entity)
+    return ([int(t) for t in tags], np.asarray(coordinates, dtype=float).tobytes(),
+            [(int(t), [int(n) for n in block]) for t, block in zip(types, nodes)])
+
+
+def snapshots(entities):
+    return {entity: snapshot(entity) for entity in entities}
+
+
+def has_elements(entity):
+    return len(gmsh.model.mesh.getElementTypes(*entity)) > 0
+
+
+def element_count(*entities):
+    return sum(len(block) for e in entities for block in gmsh.model.mesh.getElements(*e)[1])
+
+
+def node_positions():
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    positions = np.full((int(max(tags)) + 1, 3), np.nan)
+    positions[np.asarray(tags, dtype=int)] = np.asarray(coordinates).reshape(-1, 3)
+    return positions
+
+
+def corner_tags(entity, name):
+    """Node tags of the corners of all elements of an entity whose type's name begins so."""
+    blocks = [np.zeros((0, CORNERS[name]), dtype=int)]
+    types, _, nodes = gmsh.model.mesh.getElements(*entity)
+    for kind, block in zip(types, nodes):
+        properties = gmsh.model.mesh.getElementProperties(kind)
+        if properties[0].startswith(name):
+            block = np.asarray(block, dtype=int).reshape(-1, properties[3])
+            blocks.append(block[:, :CORNERS[name]])
+    return np.concatenate(blocks)
+
+
+def corners(entity, name):
+    """Corner coordinates (n, corners, 3) of those elements."""
+    return node_positions()[corner_tags(entity, name)]
+
+
+def quad_corners(entity):
+    # Gmsh 4.8 says Quadrilateral, others may say Quadrangle.
+    return np.concatenate((corners(entity, "Quadrilateral"), corners(entity, "Quadrangle")))
+
+
+def signed_volumes(volume):
+    a, b, c, d = np.moveaxis(corners(volume, "Tetrahedron"), 1, 0)
+    return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+
+
+def random_points(count, low, high, seed=1):
+    return np.random.default_rng(seed).uniform(low, high, (count, 3))
+
+
+class Log:
+    """Messages of Gmsh's log within a block."""
+
+    def __enter__(self):
+        gmsh.logger.start()
+        self.messages = []
+        return self
+
+    def __exit__(self, *_):
+        self.messages = list(gmsh.logger.get())
+        gmsh.logger.stop()
+
+    @property
+    def warnings(self):
+        return [m for m in self.messages if m.startswith("Warning: ")]
