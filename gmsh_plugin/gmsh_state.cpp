@@ -7,7 +7,9 @@
 
 namespace meshgrow {
 
-CurrentModel::CurrentModel(const std::string& name) : before_(gmsh::current_model()) {
+CurrentModel::CurrentModel(const std::string& name) {
+  gmsh::require_gmsh();
+  before_ = gmsh::current_model();
   if (before_ == name) {
     return;
   }

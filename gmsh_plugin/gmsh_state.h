@@ -13,7 +13,7 @@ namespace meshgrow {
 /// Makes a model current for the life of this object, then the one that was.
 class CurrentModel {
  public:
-  /// Throws Error if there is no such model any more.
+  /// Throws Error if Gmsh was finalized or there is no such model any more.
   explicit CurrentModel(const std::string& name);
   ~CurrentModel();
   CurrentModel(const CurrentModel&) = delete;

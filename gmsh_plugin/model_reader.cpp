@@ -15,6 +15,17 @@ namespace {
               "hexahedra, prisms or pyramids.");
 }
 
+gmsh::ElementType known_type(int type, const Entity& entity) {
+  try {
+    return gmsh::element_type(type);
+  } catch (const Error&) {
+    // Gmsh has types, such as trihedra, of which it tells no properties.
+    gmsh::ElementType unknown;
+    unknown.name = "number " + std::to_string(type);
+    refuse_type(entity, unknown);
+  }
+}
+
 ElementShape report_shape(ElementFamily family, const Entity& entity,
                           const gmsh::ElementType& type) {
   switch (family) {
@@ -103,7 +114,7 @@ FacetedSource read_entity_mesh(const Entity& entity, const NodeCoordinates& node
   FacetedSource source;
   source.entity = entity;
   for (const gmsh::Elements& block : gmsh::elements(entity)) {
-    const gmsh::ElementType type = gmsh::element_type(block.type);
+    const gmsh::ElementType type = known_type(block.type, entity);
     const ElementFamily family = element_family(type);
     const auto corner = [&](std::size_t first, std::size_t i) {
       return nodes.at(block.node_tags[first + i], entity);
@@ -138,7 +149,7 @@ ReportMesh read_report_mesh(int dim, std::vector<Entity> entities) {
   mesh.nodes = nodes.coordinates();
   for (const Entity& entity : entities) {
     for (const gmsh::Elements& block : gmsh::elements(entity)) {
-      const gmsh::ElementType type = gmsh::element_type(block.type);
+      const gmsh::ElementType type = known_type(block.type, entity);
       const ElementShape shape = report_shape(element_family(type), entity, type);
       const auto step = static_cast<std::size_t>(type.node_count);
       for (std::size_t first = 0; first + step <= block.node_tags.size(); first += step) {

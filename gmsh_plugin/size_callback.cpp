@@ -1,5 +1,6 @@
 #include "size_callback.h"
 
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -12,6 +13,17 @@ namespace {
 
 /// What Gmsh itself takes for "no size".
 constexpr double gmsh_no_size = 1e22;
+
+/// The slot that Gmsh holds for a model; 4.8 holds one for all models.
+std::map<std::string, SizeCallback::Slot*>& registered_slots() {
+  static std::map<std::string, SizeCallback::Slot*> slots;
+  return slots;
+}
+
+std::string key_of(const std::string& model) {
+  const gmsh::Version version = gmsh::require_gmsh();
+  return version.major == 4 && version.minor == 8 ? "" : model;
+}
 
 double answer_from(void* slot, int dim, int tag, double x, double y, double z, double proposed) {
   const SizeField* field = static_cast<const SizeCallback::Slot*>(slot)->field;
@@ -46,13 +58,18 @@ SizeCallback::SizeCallback(const SizeField& field, std::string model) : model_(s
   slot->field = &field;
   gmsh::set_size_callback(callback_until_48, callback_since_49, slot.get());
   slot_ = slot.release();
+  registered_slots()[key_of(model_)] = slot_;
 }
 
 SizeCallback::~SizeCallback() {
   slot_->field = nullptr;
   try {
-    const CurrentModel current(model_);
-    gmsh::remove_size_callback();
+    Slot*& registered = registered_slots()[key_of(model_)];
+    if (registered == slot_) {
+      const CurrentModel current(model_);
+      gmsh::remove_size_callback();
+      registered = nullptr;
+    }
     delete slot_;
   } catch (...) {
     // Gmsh was finalized or the model removed. Gmsh 4.8 may call back all the same later on: the

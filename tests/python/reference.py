@@ -15,7 +15,7 @@ def segment_distances(points, a, b):
 
 
 def triangle_distances(points, a, b, c):
-    """Distances (points, triangles): to the plane above the inside, to the nearest side elsewhere."""
+    """Distances (points, triangles): to the plane over the inside, elsewhere to a side."""
     sides = np.minimum(segment_distances(points, a, b), segment_distances(points, b, c))
     sides = np.minimum(sides, segment_distances(points, c, a))
     normal = np.cross(b - a, c - a)

@@ -33,7 +33,7 @@ def discretize_keeping_mesh(volume):
     """The meshed faces of a volume as one discrete surface with a discrete volume, in a model of
     its own: as read from an STL file."""
     positions = node_positions()
-    triangles = np.concatenate([corner_tags(face, "Triangle") for face in models.faces_of(volume[1])])
+    triangles = np.concatenate([corner_tags(f, "Triangle") for f in models.faces_of(volume[1])])
     used = np.unique(triangles)
     models.start("discrete")
     gmsh.model.addDiscreteEntity(2, 1)
@@ -294,18 +294,26 @@ def model_that_cannot_be_meshed():
 
 
 @pytest.mark.parametrize("values", [TOUCHED, OTHERS], ids=["defaults", "others"])
-def test_options_visibility_and_premesh_are_as_before_when_gmsh_fails(values):
+def test_options_and_visibility_are_as_before_when_gmsh_fails(values):
     surface, volume = model_that_cannot_be_meshed()
     set_options(values)
     hide_every_third()
     shown = visibilities()
-    before = snapshot(surface)
     field = mesh_field([surface], [volume], 1.3, 0.4)
     with pytest.raises(meshgrow.Error, match="Volume %d" % volume[1]):
         field.generate(3)
     assert get_options(values) == values
     assert visibilities() == shown
-    assert snapshot(surface) == before
+
+
+def test_premesh_is_kept_when_gmsh_fails():
+    """Gmsh moves the nodes of the boundary a little when it cannot mesh a volume."""
+    surface, volume = model_that_cannot_be_meshed()
+    before = snapshots([surface])
+    field = mesh_field([surface], [volume], 1.3, 0.4)
+    with pytest.raises(meshgrow.Error):
+        field.generate(3)
+    assert_kept(before)
 
 
 def test_second_order_premesh_is_kept_when_gmsh_fails():
