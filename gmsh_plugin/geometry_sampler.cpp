@@ -12,10 +12,11 @@ namespace meshgrow {
 
 namespace {
 
-constexpr int curve_intervals_at_first = 16;
-constexpr int curve_depth = 8;
-constexpr int surface_cells_at_first = 8;
-constexpr int surface_depth = 5;
+// Odd numbers: the samples of a symmetric shape then do not all agree by accident.
+constexpr int curve_intervals_at_first = 7;
+constexpr int curve_depth = 9;
+constexpr int surface_cells_at_first = 5;
+constexpr int surface_depth = 6;
 
 /// Largest distance from the entity to its pieces, in resolutions.
 constexpr double chord_error = 0.1;
@@ -104,7 +105,10 @@ class SurfaceSampler {
       longest = std::max(longest, (c[(i + 1) % 4].point - c[i].point).norm());
     }
     const Vec3 mean = 0.25 * (c[0].point + c[1].point + c[2].point + c[3].point);
-    const bool flat = (centre.point - mean).norm() <= chord_error * resolution_;
+    // The diagonal counts as well: it is where two triangles would replace the cell.
+    const Vec3 on_diagonal = 0.5 * (c[0].point + c[2].point);
+    const bool flat = std::max((centre.point - mean).norm(), (centre.point - on_diagonal).norm()) <=
+                      chord_error * resolution_;
     const bool trimmed = inside < 5;
     // Small features inside a cell whose samples agree would be missed: cells start small enough
     // by surface_cells_at_first, and trimming curves are sampled by themselves.
@@ -117,6 +121,11 @@ class SurfaceSampler {
       refine({south, c[1], east, centre}, depth - 1);
       refine({centre, east, c[2], north}, depth - 1);
       refine({west, centre, north, c[3]}, depth - 1);
+      return;
+    }
+    if (!trimmed && flat) {
+      source_.triangles.push_back({c[0].point, c[1].point, c[2].point});
+      source_.triangles.push_back({c[0].point, c[2].point, c[3].point});
       return;
     }
     for (int i = 0; i < 4; ++i) {
