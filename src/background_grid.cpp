@@ -19,6 +19,10 @@ void check(const GridOptions& options) {
     throw Error("The tolerance of the background grid is " + std::to_string(options.tolerance) +
                 ": give a number from 0.0001 to 1, for example 0.05.");
   }
+  if (options.facets_per_exact_leaf < 0) {
+    throw Error("A cell of the background grid must be allowed 0 facets or more, not " +
+                std::to_string(options.facets_per_exact_leaf) + ".");
+  }
 }
 
 }  // namespace
@@ -41,7 +45,7 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double siz
   root_ = nodes_.blocks[0][0];
   statistics_.interpolated_leaves = nodes_.corners.size();
   statistics_.exact_leaves = nodes_.exact_begin.size() - 1;
-  statistics_.blocks = nodes_.blocks.size();
+  statistics_.blocks = nodes_.blocks.size() - 1;  // one stands above the root
   statistics_.depth = nodes_.depth;
   statistics_.bytes = nodes_.blocks.size() * sizeof(nodes_.blocks[0]) +
                       nodes_.corners.size() * sizeof(CornerValues) +

@@ -70,7 +70,8 @@ void CellClassifier::drop_never_ruling(const std::vector<std::uint32_t>& candida
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const Tangent& tangent = tangents_[k];
     if (static_cast<std::int64_t>(k) != best_) {
-      bool never_rules = tangent.smallest() >= highest;
+      const double start_size = tree_.facets()[candidates[k]].start_size;
+      bool never_rules = std::max(start_size, tangent.smallest()) >= highest;
       for (int i = 0; i < 8 && !never_rules; ++i) {
         if (tangent.at_corner(i) < best_corners_[i]) {
           break;

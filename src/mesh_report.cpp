@@ -78,13 +78,13 @@ double quantile(std::vector<double>& values, double fraction) {
   return *place;
 }
 
-double share(const std::vector<double>& values, double above, double up_to) {
+/// Share of the values for which `counts` holds.
+template <typename Condition>
+double share(const std::vector<double>& values, Condition counts) {
   if (values.empty()) {
     return MeshReport::unknown;
   }
-  const auto count = std::count_if(values.begin(), values.end(), [above, up_to](double value) {
-    return value > above && value <= up_to;
-  });
+  const auto count = std::count_if(values.begin(), values.end(), counts);
   return static_cast<double>(count) / static_cast<double>(values.size());
 }
 
@@ -147,9 +147,9 @@ void measure_lengths(const ReportMesh& mesh, const SizeAsked& size_asked, MeshRe
       lengths.push_back((b - a).norm() / asked);
     }
   }
-  constexpr double unlimited = std::numeric_limits<double>::infinity();
-  report.length_share_good = share(lengths, std::sqrt(0.5), std::sqrt(2.0));
-  report.length_share_over_2 = share(lengths, 2.0, unlimited);
+  report.length_share_good = share(
+      lengths, [](double length) { return length >= std::sqrt(0.5) && length <= std::sqrt(2.0); });
+  report.length_share_over_2 = share(lengths, [](double length) { return length > 2.0; });
   report.length_median = quantile(lengths, 0.5);
 }
 

@@ -18,8 +18,9 @@ inline int default_threads() {
 }
 
 /// Runs body(i) for i in [0, count) on `threads` OpenMP threads (0: default_threads()), in any
-/// order. The first exception of a body is thrown again after all threads have come to rest.
-/// `finished(n)` is called on the calling thread only, with the number of bodies done so far.
+/// order. The first exception of a body or of `finished` is thrown again after all threads have
+/// come to rest. `finished(n)` is called on the calling thread only, with the number of bodies done
+/// so far.
 template <typename Body, typename Finished>
 void parallel_for(std::size_t count, int threads, Body body, Finished finished) {
   std::exception_ptr failure;
@@ -35,18 +36,17 @@ void parallel_for(std::size_t count, int threads, Body body, Finished finished) 
     }
     try {
       body(i);
+      std::size_t so_far = 0;
+#pragma omp atomic capture
+      so_far = ++done;
+      if (omp_get_thread_num() == 0) {
+        finished(so_far);
+      }
     } catch (...) {
 #pragma omp critical(meshgrow_parallel_for)
       if (!failure) {
         failure = std::current_exception();
       }
-      continue;
-    }
-    std::size_t so_far = 0;
-#pragma omp atomic capture
-    so_far = ++done;
-    if (omp_get_thread_num() == 0) {
-      finished(so_far);
     }
   }
   if (failure) {

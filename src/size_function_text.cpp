@@ -206,10 +206,16 @@ class Parser {
     }
     // As in .geo, a range names whole numbers; of these, the entities that exist are taken.
     const int last = parse_tag();
+    bool found = false;
     for (const Entity& entity : all) {
       if (entity.tag >= first && entity.tag <= last) {
         entities.push_back(entity);
+        found = true;
       }
+    }
+    if (!found) {
+      throw Error("\"" + text_ + "\": the model has no " + dimension_name(dim) + " from " +
+                  std::to_string(first) + " to " + std::to_string(last) + ": check the tags.");
     }
   }
 

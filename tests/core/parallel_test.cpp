@@ -79,5 +79,12 @@ TEST(ParallelFor, TellsTheCallingThreadWhatIsDone) {
   }
 }
 
+TEST(ParallelFor, ExceptionOfTheListenerIsThrownAgain) {
+  const auto listener = [](std::size_t) { throw Error("stop"); };
+  EXPECT_THROW(parallel_for(
+                   10, 1, [](std::size_t) {}, listener),
+               Error);
+}
+
 }  // namespace
 }  // namespace meshgrow

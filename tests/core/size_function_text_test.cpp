@@ -315,6 +315,10 @@ TEST(SizeFunctionText, UnknownEntityIsNamed) {
   expect_unknown("mesh source Curve{-4} attach Volume{2} growth 1.2 limit 2", "Curve -4");
 }
 
+TEST(SizeFunctionText, RangeWithoutEntitiesIsNamed) {
+  expect_unknown("mesh source Surface{30:40} attach Volume{2} growth 1.2 limit 2", "30 to 40");
+}
+
 TEST(SizeFunctionText, UnknownPhysicalGroupIsNamed) {
   const std::string rest = " attach Volume{2} growth 1.2 limit 2";
   expect_unknown("mesh source Physical Surface{outlet}" + rest, "Physical Surface \"outlet\"");
