@@ -248,11 +248,15 @@ int meshgrow_field_set_option(meshgrow_field* field, const char* name, double va
 }
 
 int meshgrow_field_set_progress(meshgrow_field* field,
-                                void (*listener)(const char* line, void* data), void* data) {
+                                int (*listener)(const char* line, void* data), void* data) {
   return guarded(1, [&] {
     meshgrow::ModelField::ProgressListener call;
     if (listener != nullptr) {
-      call = [listener, data](const std::string& line) { listener(line.c_str(), data); };
+      call = [listener, data](const std::string& line) {
+        if (listener(line.c_str(), data) != 0) {
+          throw Error("Stopped by the listener of progress; what was meshed before is kept.");
+        }
+      };
     }
     deref(field).set_progress_listener(call);
     return 0;

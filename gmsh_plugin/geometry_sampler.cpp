@@ -163,7 +163,6 @@ void sample(const Entity& entity, const Topology& topology, double resolution,
 FacetedSource sample_geometry(const Entity& entity, const Topology& topology, double resolution) {
   FacetedSource source;
   source.entity = entity;
-  source.is_mesh = false;
   sample(entity, topology, resolution, source);
   return source;
 }

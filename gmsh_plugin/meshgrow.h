@@ -64,9 +64,10 @@ MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
 MESHGROW_API int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value);
 
 /* Calls `listener` with each line of progress (passes of the mesher, how far a grid is) from the
- * thread that meshes, in place of Gmsh's log; NULL ends that. */
+ * thread that meshes, in place of Gmsh's log; NULL ends that. A result other than 0 stops the work
+ * as soon as possible, with an error. */
 MESHGROW_API int meshgrow_field_set_progress(meshgrow_field* field,
-                                             void (*listener)(const char* line, void* data),
+                                             int (*listener)(const char* line, void* data),
                                              void* data);
 
 /* Reads the sources as they are meshed now and builds the grids. */

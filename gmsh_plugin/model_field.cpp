@@ -157,11 +157,16 @@ void ModelField::register_callback() {
 }
 
 void ModelField::generate(int dim) {
+  if (generating_) {
+    throw Error("This size field is meshing already: wait for its end.");
+  }
   const CurrentModel current(model_);
   check_model();
+  generating_ = true;
   const bool was_registered = is_registered();
   unregister_callback();
   const auto register_again = [&] {
+    generating_ = false;
     if (was_registered) {
       callback_ = std::make_unique<SizeCallback>(field_, model_);
     }

@@ -75,6 +75,7 @@ class ModelField {
   SizeField field_;
   bool strict_ = false;
   bool sources_read_ = false;
+  bool generating_ = false;
   std::set<std::size_t> reported_;
   ProgressListener listener_;
   std::string grid_told_of_;

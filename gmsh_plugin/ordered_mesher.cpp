@@ -22,6 +22,13 @@ void OrderedMesher::check_options() const {
         "Mesh.SubdivisionAlgorithm would split the premeshed elements too: set it to 0 and "
         "call refine() after meshing.");
   }
+  const std::optional<Entity> curved = premeshed_.any_of_higher_order();
+  if (curved && gmsh::option("Mesh.ElementOrder") < 2.0) {
+    gmsh::log(entity_name(*curved) +
+                  " keeps its elements of higher order, but what is meshed beside it will be of "
+                  "first order: set Mesh.ElementOrder to 2 for a conforming mesh.",
+              "warning");
+  }
 }
 
 void OrderedMesher::generate(int dim) {
@@ -136,8 +143,10 @@ void OrderedMesher::pass(const std::vector<Entity>& entities, bool attached) {
   try {
     gmsh::generate(dim);
   } catch (const Error& error) {
+    check_faces_stayed(entities, name);
     throw Error("Meshing stopped in " + name + ": " + error.what());
   }
+  check_faces_stayed(entities, name);
   premeshed_.put_back_missing();
   check_result(entities, name);
   done_.insert(entities.begin(), entities.end());
@@ -152,6 +161,23 @@ void OrderedMesher::pass(const std::vector<Entity>& entities, bool attached) {
         stale_.insert(i);
       }
     }
+  }
+}
+
+void OrderedMesher::check_faces_stayed(const std::vector<Entity>& volumes,
+                                       const std::string& pass_name) const {
+  std::vector<Entity> gone;
+  for (const Entity& entity : field_.topology().closure(volumes)) {
+    if (volumes.front().dim == 3 && entity.dim == 2 && premeshed_.contains(entity) &&
+        !gmsh::has_elements(entity)) {
+      gone.push_back(entity);
+    }
+  }
+  if (!gone.empty()) {
+    throw Error("Gmsh threw away the mesh of " + entity_names(gone) + " in " + pass_name +
+                ", as it does with discrete surfaces that have a parametrisation: leave out "
+                "createGeometry(), or use register() and Gmsh's own generate(); the mesh was put "
+                "back.");
   }
 }
 

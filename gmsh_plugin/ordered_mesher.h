@@ -32,6 +32,7 @@ class OrderedMesher {
   void read_new_sources();
   bool acts_effectively(const Entity& entity) const;
   void check_options() const;
+  void check_faces_stayed(const std::vector<Entity>& volumes, const std::string& pass_name) const;
   void check_result(const std::vector<Entity>& entities, const std::string& pass_name) const;
   void report_unmeshed_sources(const std::vector<Entity>& entities);
 

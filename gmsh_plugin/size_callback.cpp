@@ -31,7 +31,15 @@ double answer_from(void* slot, int dim, int tag, double x, double y, double z, d
 }
 
 double callback_until_48(int dim, int tag, double x, double y, double z, void* slot) {
-  // 4.8 takes the minimum of all its sizes and this answer by itself.
+  // 4.8 takes the minimum of all its sizes and this answer by itself. It has one callback for all
+  // models, so the current one may be another.
+  try {
+    if (gmsh::current_model() != static_cast<const SizeCallback::Slot*>(slot)->model) {
+      return gmsh_no_size;
+    }
+  } catch (...) {
+    return gmsh_no_size;
+  }
   return answer_from(slot, dim, tag, x, y, z, gmsh_no_size);
 }
 
@@ -56,6 +64,7 @@ SizeCallback::SizeCallback(const SizeField& field, std::string model) : model_(s
   const CurrentModel current(model_);
   auto slot = std::make_unique<Slot>();
   slot->field = &field;
+  slot->model = model_;
   gmsh::set_size_callback(callback_until_48, callback_since_49, slot.get());
   slot_ = slot.release();
   registered_slots()[key_of(model_)] = slot_;

@@ -27,7 +27,8 @@ class SizeCallback {
 
   /// What Gmsh holds a pointer to.
   struct Slot {
-    std::atomic<const SizeField*> field;
+    std::atomic<const SizeField*> field{nullptr};
+    std::string model;
   };
 
  private:

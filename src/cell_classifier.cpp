@@ -11,8 +11,11 @@ namespace {
 /// tree.
 constexpr std::size_t direct_evaluation_limit = 2048;
 
-/// Below this distance, in half edges, the direction to a facet is mostly rounding.
-constexpr double smallest_direction = 1e-6;
+/// Below this distance the direction to a facet is mostly rounding, of the cell's size or, far from
+/// the origin, of the coordinates themselves.
+double smallest_direction(const GridCell& cell) {
+  return std::max(1e-6 * cell.half_edge, 1e-9 * cell.centre.cwiseAbs().maxCoeff());
+}
 
 }  // namespace
 
@@ -42,16 +45,17 @@ void CellClassifier::compute_tangents(const GridCell& cell,
   const SizedFacets& facets = tree_.facets();
   tangents_.resize(candidates.size());
   best_ = -1;
+  const double too_near = smallest_direction(cell);
   double best_size = size_limit_;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const SizedFacet& facet = facets[candidates[k]];
     const Vec3 away = cell.centre - closest_point(facet.facet, cell.centre);
     const double distance = away.norm();
     const double size = facet.start_size + facet.slope * distance;
-    if (distance > smallest_direction * cell.half_edge) {
+    if (distance > too_near) {
       tangents_[k] = {size, (facet.slope * cell.half_edge / distance) * away};
     } else {
-      tangents_[k] = {facet.start_size, Vec3::Zero()};
+      tangents_[k] = {facet.start_size, Vec3::Zero()};  // no direction, but a bound all the same
     }
     if (size < best_size) {
       best_size = size;

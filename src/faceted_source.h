@@ -10,10 +10,9 @@
 namespace meshgrow {
 
 /// A source entity as pieces, before sizes are given to them: the elements of its mesh by their
-/// corner nodes or, where `is_mesh` is false, pieces made from its geometry.
+/// corner nodes or pieces made from its geometry.
 struct FacetedSource {
   Entity entity;
-  bool is_mesh = true;
   std::vector<Vec3> points;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<std::array<Vec3, 3>> triangles;

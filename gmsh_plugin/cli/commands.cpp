@@ -174,7 +174,12 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
     std::cout << "No size function is given: Gmsh's own sizes rule." << std::endl;
   }
   check(meshgrow_field_set_progress(
-      field.get(), [](const char* line, void*) { std::cout << line << std::endl; }, nullptr));
+      field.get(),
+      [](const char* line, void*) {
+        std::cout << line << std::endl;
+        return 0;
+      },
+      nullptr));
   check(meshgrow_field_generate(field.get(), dim));
   write_mesh(output);
   std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
@@ -205,7 +210,13 @@ void report(const ReportArguments& arguments, const FieldArguments& field_argume
     }
     const std::string measured = take_text(
         meshgrow_report_json(arguments.dim, dim_tags.data(), dim_tags.size(), field.get()));
-    rows.push_back({{"name", file}, {"report", nlohmann::json::parse(measured)}});
+    nlohmann::json values = nlohmann::json::parse(measured);
+    if (values.at("elements") == 0) {
+      throw Error(file + " has no elements of dimension " + std::to_string(arguments.dim) +
+                  (arguments.entities.empty() ? "" : " on " + arguments.entities) +
+                  ": mesh it first, or choose --dim.");
+    }
+    rows.push_back({{"name", file}, {"report", std::move(values)}});
   }
   if (arguments.json) {
     std::cout << rows.dump(2) << '\n';

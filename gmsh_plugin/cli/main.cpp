@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   const auto add_field_options = [&field_arguments](CLI::App* command) {
     command
         ->add_option("--size-function", field_arguments.size_functions,
-                     "A size function, one line of text; may be given several times")
+                     "A size function, one line of text such as 'mesh source Surface{7} attach "
+                     "Volume{2} growth 1.2 limit 2'; may be given several times")
         ->allow_extra_args(false);
     command->add_option("--size-functions", field_arguments.file,
                         "A file of size functions, one a line; # begins a comment");

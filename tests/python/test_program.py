@@ -163,6 +163,10 @@ def test_output_in_an_unknown_format(box, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["box.geo"]
 
 
+def test_report_of_a_model_without_elements(box):
+    assert_refused(run("report", box), "no elements of dimension 3", "box.geo")
+
+
 def test_no_libgmsh(box):
     assert_refused(run("mesh", box, MESHGROW_GMSH_LIB="/nowhere/libgmsh.so"), "MESHGROW_GMSH_LIB")
 

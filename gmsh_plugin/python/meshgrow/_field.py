@@ -1,6 +1,7 @@
 """The size field of a Gmsh model."""
 
 import json
+import operator
 
 import numpy as np
 
@@ -22,11 +23,13 @@ class SizeField:
     threads
         that build grids; 0 takes all.
     progress
-        called with each line of progress (a str), for example ``print``; None: Gmsh's log.
+        called with each line of progress (a str), for example ``print``; None: Gmsh's log. An
+        exception from it stops the work; what was meshed is kept.
     """
 
     def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0,
                  progress=None):
+        self._raised = None
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
         if evaluator not in ("grid", "exact"):
@@ -37,13 +40,30 @@ class SizeField:
         self._set("threads", threads)
         if progress is not None:
             # Kept as long as the field, which calls it.
-            self._listener = PROGRESS_LISTENER(lambda line, _: progress(line.decode()))
+            self._listener = PROGRESS_LISTENER(self._listen_with(progress))
             check(lib.meshgrow_field_set_progress(self._handle, self._listener, None))
 
     def __del__(self):
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             lib.meshgrow_field_destroy(handle)
+
+    def _listen_with(self, progress):
+        """A C listener; what `progress` raises stops the work and is raised again by `_check`."""
+        def listen(line, _):
+            try:
+                progress(line.decode())
+            except BaseException as raised:  # KeyboardInterrupt as well
+                self._raised = raised
+                return 1
+            return 0
+        return listen
+
+    def _check(self, failed):
+        raised, self._raised = self._raised, None
+        if raised is not None:
+            raise raised
+        check(failed)
 
     def _set(self, name, value):
         check(lib.meshgrow_field_set_option(self._handle, name.encode(), float(value)))
@@ -75,16 +95,17 @@ class SizeField:
     def generate(self, dim=3):
         """Meshes up to dimension ``dim`` with Gmsh's own algorithms, sources first.
 
-        What had a mesh before keeps it: node tags, coordinates to the bit, connectivity.
+        What had a mesh before keeps it: node tags, coordinates to the bit, connectivity. Only where
+        Mesh.ElementOrder is 2 or more, elements of first order get mid nodes beside their own.
         """
-        check(lib.meshgrow_field_generate(self._handle, int(dim)))
+        self._check(lib.meshgrow_field_generate(self._handle, operator.index(dim)))
 
     def register(self):
         """Reads the sources as they are meshed now and becomes Gmsh's size callback.
 
         Only the callback: the caller meshes, sources in the order in which Gmsh meshes them.
         """
-        check(lib.meshgrow_field_register(self._handle))
+        self._check(lib.meshgrow_field_register(self._handle))
 
     def unregister(self):
         """Takes the size callback away again."""
@@ -92,7 +113,7 @@ class SizeField:
 
     def refresh(self):
         """Reads the sources as they are meshed now and builds the grids."""
-        check(lib.meshgrow_field_refresh(self._handle))
+        self._check(lib.meshgrow_field_refresh(self._handle))
 
     def size(self, dim, tag, points):
         """Sizes asked for on an entity at points (n, 3) -> (n,) float64; inf where none acts."""
@@ -105,7 +126,7 @@ class SizeField:
     def _sizes(self, function, dim, tag, points):
         array = points_array(points)
         result = np.empty(len(array))
-        check(function(self._handle, dim, tag, doubles(array), len(array), doubles(result)))
+        self._check(function(self._handle, dim, tag, doubles(array), len(array), doubles(result)))
         return result
 
     def summary(self):

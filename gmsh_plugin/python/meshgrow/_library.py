@@ -1,6 +1,7 @@
 """The shared library behind the package, and what passes its C border."""
 
 import ctypes
+import operator
 import os
 
 import numpy as np
@@ -13,7 +14,7 @@ _DOUBLES = ctypes.POINTER(_DOUBLE)
 _FIELD = ctypes.c_void_p
 _TEXT = ctypes.c_void_p  # a char* that must be freed, so not c_char_p
 
-PROGRESS_LISTENER = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_void_p)
+PROGRESS_LISTENER = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
 
 _SIGNATURES = {
     "meshgrow_version": (ctypes.c_char_p, []),
@@ -98,7 +99,11 @@ def take_text(text):
 
 def dim_tags(entities):
     """A list of (dim, tag) as the C array of ints and its length."""
-    flat = [int(value) for entity in entities for value in entity]
+    flat = []
+    for dim, tag in entities:
+        flat += [operator.index(dim), operator.index(tag)]
+    if any(abs(value) > 2**31 - 1 for value in flat):
+        raise ValueError("a dimension or tag is beyond the range of Gmsh's integers")
     return (_INT * len(flat))(*flat), len(flat)
 
 
