@@ -66,7 +66,8 @@ def make_mesh(name, with_mesh_function):
         field.add_fixed(sources=tools.surfaces_of(bolts), attach=bolts, size=BOLT_SIZE,
                         growth_rate=GROWTH_RATE, size_limit=SIZE_LIMIT)
 
-    asked = meshgrow.SizeField(progress=tools.progress)
+    # Without the function, the sizes it would ask for are only measured against, quietly.
+    asked = meshgrow.SizeField(progress=tools.progress if with_mesh_function else None)
     add_bolt_sizes(asked)
     asked.add_mesh(sources=shared, attach=plates, growth_rate=GROWTH_RATE, size_limit=SIZE_LIMIT)
     field = asked

@@ -54,7 +54,8 @@ def make_mesh(name, with_size_function, extend_from_boundary=1):
     premesh(common)
     gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", extend_from_boundary)
 
-    asked = meshgrow.SizeField(progress=tools.progress)
+    # Without the function, the sizes it would ask for are only measured against, quietly.
+    asked = meshgrow.SizeField(progress=tools.progress if with_size_function else None)
     asked.add_mesh(sources=common, attach=[inner, outer], growth_rate=GROWTH_RATE,
                    size_limit=SIZE_LIMIT)
     # A field without any function meshes in the same order and leaves all sizes to Gmsh.
