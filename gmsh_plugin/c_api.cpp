@@ -167,9 +167,7 @@ json summary_json(const meshgrow::SizeField& field) {
 void set_option(meshgrow::ModelField& model_field, const std::string& name, double value) {
   meshgrow::FieldOptions& options = model_field.field().options();
   if (name == "tolerance") {
-    if (!(value >= 1e-4 && value <= 1.0)) {
-      throw Error("The tolerance must be a number from 0.0001 to 1, for example 0.05.");
-    }
+    meshgrow::check_tolerance(value);
     options.tolerance = value;
   } else if (name == "threads") {
     if (!(value >= 0.0 && value <= 1024.0)) {

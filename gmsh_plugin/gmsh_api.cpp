@@ -133,7 +133,6 @@ void initialize(const std::vector<std::string>& arguments) {
 
 void finalize() { library().call("gmshFinalize"); }
 void open(const std::string& file) { library().call("gmshOpen", file.c_str()); }
-void merge(const std::string& file) { library().call("gmshMerge", file.c_str()); }
 void write(const std::string& file) { library().call("gmshWrite", file.c_str()); }
 
 double option(const std::string& name) {
@@ -204,12 +203,6 @@ Box bounding_box(const Entity& entity) {
     return Box();
   }
   return (low.array() <= high.array()).all() ? Box(low, high) : Box();
-}
-
-std::string entity_type(const Entity& entity) {
-  char* name = nullptr;
-  library().call("gmshModelGetType", entity.dim, entity.tag, &name);
-  return take_string(name);
 }
 
 std::vector<Entity> physical_groups() {

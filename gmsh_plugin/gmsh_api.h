@@ -26,7 +26,6 @@ Version require_gmsh();
 void initialize(const std::vector<std::string>& arguments);
 void finalize();
 void open(const std::string& file);
-void merge(const std::string& file);
 void write(const std::string& file);
 
 double option(const std::string& name);
@@ -45,8 +44,6 @@ std::vector<Entity> boundary(const Entity& entity);
 std::vector<Entity> embedded(const Entity& entity);
 /// Empty for a discrete entity without a mesh.
 Box bounding_box(const Entity& entity);
-/// Gmsh's name of the kind of entity, such as "Plane" or "Discrete surface".
-std::string entity_type(const Entity& entity);
 
 std::vector<Entity> physical_groups();
 std::string physical_name(const Entity& group);

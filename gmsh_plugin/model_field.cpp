@@ -91,7 +91,7 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
   }
 }
 
-void ModelField::report_unmeshed(std::size_t function, bool throw_if_strict) {
+void ModelField::report_unmeshed(std::size_t function) {
   if (field_.functions()[function].kind != Kind::mesh) {
     return;
   }
@@ -109,7 +109,7 @@ void ModelField::report_unmeshed(std::size_t function, bool throw_if_strict) {
                                (field_.is_effective(function) ? ", so only its other sources act"
                                                               : ", so the function has no effect") +
                                ": mesh the source before what grows from it.";
-  if (strict_ && throw_if_strict) {
+  if (strict_) {
     throw Error(sentence);
   }
   if (reported_.insert(function).second) {
@@ -135,7 +135,7 @@ void ModelField::refresh() {
   read_sources(all);
   reported_.clear();
   for (const std::size_t function : all) {
-    report_unmeshed(function, true);
+    report_unmeshed(function);
   }
   field_.build();
   sources_read_ = true;

@@ -64,10 +64,11 @@ class ModelField {
   /// Throws Error if entities came or went since the field was made.
   void check_model() const;
 
-  /// Reads the sources of the functions that act on these entities, as far as they changed.
+  /// Gives these functions their sources as they are in the model now.
   void read_sources(const std::vector<std::size_t>& functions);
-  void warn_or_throw(const std::string& sentence) const;
-  void report_unmeshed(std::size_t function, bool throw_if_strict);
+
+  /// Warns once of (with `strict`: throws for) a mesh size function with unmeshed sources.
+  void report_unmeshed(std::size_t function);
 
   void tell_grid(const std::string& what, double done);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 #include "error.h"
 #include "gmsh_api.h"
@@ -12,7 +13,6 @@ namespace meshgrow {
 OrderedMesher::OrderedMesher(ModelField& model_field)
     : model_field_(model_field),
       field_(model_field.field()),
-      current_(model_field.model()),
       all_(field_.topology().entities()),
       premeshed_(field_.topology()) {}
 
@@ -108,19 +108,20 @@ void OrderedMesher::read_new_sources() {
 }
 
 void OrderedMesher::report_unmeshed_sources(const std::vector<Entity>& entities) {
-  std::set<std::size_t> functions;
+  std::map<std::size_t, std::vector<Entity>> acted_on;
   for (const Entity& entity : entities) {
     for (const std::size_t function : field_.functions_on(entity)) {
-      // A source's own boundary is meshed before it, and other sources of the function are not
-      // asked to wait for it.
-      const std::set<Entity> own = field_.topology().closure(field_.functions()[function].sources);
-      if (own.count(entity) == 0) {
-        functions.insert(function);
-      }
+      acted_on[function].push_back(entity);
     }
   }
-  for (const std::size_t function : functions) {
-    model_field_.report_unmeshed(function, true);
+  for (const auto& [function, targets] : acted_on) {
+    // A source's own boundary is meshed before it, and other sources of the function are not asked
+    // to wait for it.
+    const std::set<Entity> own = field_.topology().closure(field_.functions()[function].sources);
+    if (std::any_of(targets.begin(), targets.end(),
+                    [&own](const Entity& entity) { return own.count(entity) == 0; })) {
+      model_field_.report_unmeshed(function);
+    }
   }
 }
 
@@ -154,22 +155,25 @@ void OrderedMesher::pass(const std::vector<Entity>& entities, bool attached) {
     premeshed_.keep(entities);
   }
   for (std::size_t i = 0; i < field_.functions().size(); ++i) {
-    const std::vector<Entity>& sources = field_.functions()[i].sources;
-    for (const Entity& source : sources) {
-      if (field_.functions()[i].kind == Kind::mesh &&
-          std::count(entities.begin(), entities.end(), source) > 0) {
-        stale_.insert(i);
-      }
+    const SizeFunction& function = field_.functions()[i];
+    const auto just_meshed = [&entities](const Entity& source) {
+      return std::count(entities.begin(), entities.end(), source) > 0;
+    };
+    if (function.kind == Kind::mesh &&
+        std::any_of(function.sources.begin(), function.sources.end(), just_meshed)) {
+      stale_.insert(i);
     }
   }
 }
 
-void OrderedMesher::check_faces_stayed(const std::vector<Entity>& volumes,
+void OrderedMesher::check_faces_stayed(const std::vector<Entity>& entities,
                                        const std::string& pass_name) const {
+  if (entities.front().dim < 3) {
+    return;  // a pass over curves takes surface meshes away rightly: they are put back after it
+  }
   std::vector<Entity> gone;
-  for (const Entity& entity : field_.topology().closure(volumes)) {
-    if (volumes.front().dim == 3 && entity.dim == 2 && premeshed_.contains(entity) &&
-        !gmsh::has_elements(entity)) {
+  for (const Entity& entity : field_.topology().closure(entities)) {
+    if (entity.dim == 2 && premeshed_.contains(entity) && !gmsh::has_elements(entity)) {
       gone.push_back(entity);
     }
   }

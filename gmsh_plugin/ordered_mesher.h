@@ -17,10 +17,11 @@ namespace meshgrow {
 /// First all sources with their boundaries, then everything else, each dimension by dimension; a
 /// pass of Gmsh holds only entities on which an effective function acts, with Gmsh's own growth
 /// from the boundary switched off, or only others, with the user's setting. What had a mesh at the
-/// beginning is left out of all passes and is unchanged at the end. Gmsh's options, visibility and
-/// current model are restored, also on errors; what was meshed before an error is kept.
+/// beginning is left out of all passes and is unchanged at the end. Gmsh's options and visibility
+/// are restored, also on errors; what was meshed before an error is kept.
 class OrderedMesher {
  public:
+  /// The field's model must be the current one.
   explicit OrderedMesher(ModelField& model_field);
 
   /// Up to dimension 1, 2 or 3. Throws Error naming entity and pass if Gmsh fails.
@@ -32,13 +33,12 @@ class OrderedMesher {
   void read_new_sources();
   bool acts_effectively(const Entity& entity) const;
   void check_options() const;
-  void check_faces_stayed(const std::vector<Entity>& volumes, const std::string& pass_name) const;
+  void check_faces_stayed(const std::vector<Entity>& entities, const std::string& pass_name) const;
   void check_result(const std::vector<Entity>& entities, const std::string& pass_name) const;
   void report_unmeshed_sources(const std::vector<Entity>& entities);
 
   ModelField& model_field_;
   SizeField& field_;
-  CurrentModel current_;
   std::vector<Entity> all_;
   GmshState state_;
   PremeshedStore premeshed_;

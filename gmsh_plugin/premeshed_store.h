@@ -25,7 +25,6 @@ class PremeshedStore {
   void keep(const std::vector<Entity>& entities);
 
   bool contains(const Entity& entity) const { return meshes_.count(entity) > 0; }
-  std::size_t size() const { return meshes_.size(); }
 
   /// Puts back every stored mesh that is gone entirely, as after a pass over curves. First order
   /// only: Gmsh has made everything first order at that time.

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "grid_builder.h"
 #include "grid_cell.h"
+#include "number_text.h"
 
 namespace meshgrow {
 
@@ -15,10 +16,7 @@ namespace {
 constexpr double smallest_tolerance = 1e-4;
 
 void check(const GridOptions& options) {
-  if (!(options.tolerance >= smallest_tolerance && options.tolerance <= 1.0)) {
-    throw Error("The tolerance of the background grid is " + std::to_string(options.tolerance) +
-                ": give a number from 0.0001 to 1, for example 0.05.");
-  }
+  check_tolerance(options.tolerance);
   if (options.facets_per_exact_leaf < 0) {
     throw Error("A cell of the background grid must be allowed 0 facets or more, not " +
                 std::to_string(options.facets_per_exact_leaf) + ".");
@@ -26,6 +24,13 @@ void check(const GridOptions& options) {
 }
 
 }  // namespace
+
+void check_tolerance(double tolerance) {
+  if (!(tolerance >= smallest_tolerance && tolerance <= 1.0)) {
+    throw Error("The tolerance of the background grid is " + shortest(tolerance) +
+                ": give a number from 0.0001 to 1, for example 0.05.");
+  }
+}
 
 BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double size_limit,
                                const Box& box, const GridOptions& options)

@@ -23,6 +23,9 @@ struct GridOptions {
   std::function<void(double)> progress;
 };
 
+/// Throws Error unless a background grid can have this relative tolerance: 0.0001 to 1.
+void check_tolerance(double tolerance);
+
 /// Octree that interpolates a size field (paper, section 4; DESIGN.md, section 2).
 ///
 /// The field is h(p) = min(L, min over facets of S0 + α · distance). The grid promises

@@ -71,9 +71,10 @@ void CellClassifier::drop_never_ruling(const std::vector<std::uint32_t>& candida
   ruling_.clear();
   ruling_tangents_.clear();
   const double highest = *std::max_element(best_corners_.begin(), best_corners_.end());
+  const std::int64_t best_candidate = best_;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const Tangent& tangent = tangents_[k];
-    if (static_cast<std::int64_t>(k) != best_) {
+    if (static_cast<std::int64_t>(k) != best_candidate) {
       const double start_size = tree_.facets()[candidates[k]].start_size;
       bool never_rules = std::max(start_size, tangent.smallest()) >= highest;
       for (int i = 0; i < 8 && !never_rules; ++i) {

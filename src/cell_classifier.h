@@ -75,6 +75,7 @@ class CellClassifier {
   std::vector<std::uint32_t> ruling_;
   std::vector<Tangent> ruling_tangents_;
   std::vector<std::uint32_t> leaf_facets_;
+  /// First among the candidates, then, once some are dropped, among the ruling facets.
   std::int64_t best_ = -1;              ///< candidate that rules at the centre; -1: the size limit
   std::array<double, 8> best_corners_;  ///< its sizes at the corners: upper bounds of the field
   Lattice lattice_;
