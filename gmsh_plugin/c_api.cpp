@@ -178,9 +178,11 @@ void set_option(meshgrow::ModelField& model_field, const std::string& name, doub
     options.evaluator = value != 0.0 ? meshgrow::Evaluator::exact : meshgrow::Evaluator::grid;
   } else if (name == "strict") {
     model_field.set_strict(value != 0.0);
+  } else if (name == "calibrate") {
+    model_field.set_calibrate(value != 0.0);
   } else {
     throw Error("There is no option \"" + name +
-                "\": give \"tolerance\", \"threads\", \"exact\" or \"strict\".");
+                "\": give \"tolerance\", \"threads\", \"exact\", \"strict\" or \"calibrate\".");
   }
 }
 
@@ -282,9 +284,46 @@ int meshgrow_field_unregister(meshgrow_field* field) {
   });
 }
 
-int meshgrow_field_generate(meshgrow_field* field, int dim) {
+int meshgrow_field_generate(meshgrow_field* field, int dim, int remesh) {
   return guarded(1, [&] {
-    deref(field).generate(dim);
+    deref(field).generate(dim, remesh != 0);
+    return 0;
+  });
+}
+
+char* meshgrow_field_plan(meshgrow_field* field, int dim) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    const meshgrow::ModelField& model_field = deref(field);
+    return copy_text(meshgrow::plan_text(model_field.plan(dim), model_field.field().functions()));
+  });
+}
+
+char* meshgrow_field_plan_json(meshgrow_field* field, int dim) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    json passes = json::array();
+    for (const meshgrow::MeshingPass& pass : deref(field).plan(dim)) {
+      passes.push_back({{"dim", pass.dim},
+                        {"attached", pass.attached},
+                        {"entities", dim_tags(pass.entities)},
+                        {"functions", pass.functions},
+                        {"sources", dim_tags(pass.sources)}});
+    }
+    return copy_text(passes.dump());
+  });
+}
+
+int meshgrow_field_combine(meshgrow_field* field,
+                           double (*sizes)(int dim, int tag, double x, double y, double z,
+                                           double size_so_far, void* data),
+                           void* data) {
+  return guarded(1, [&] {
+    meshgrow::UserSizes call;
+    if (sizes != nullptr) {
+      call = [sizes, data](int dim, int tag, double x, double y, double z, double so_far) {
+        return sizes(dim, tag, x, y, z, so_far, data);
+      };
+    }
+    deref(field).combine(call);
     return 0;
   });
 }
@@ -301,9 +340,8 @@ int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag, const dou
 
 double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x, double y,
                              double z, double proposed) {
-  return field == nullptr
-             ? proposed
-             : meshgrow::answer_size(field->model_field.field(), dim, tag, x, y, z, proposed);
+  return field == nullptr ? proposed
+                          : field->model_field.answers().answer(dim, tag, x, y, z, proposed);
 }
 
 char* meshgrow_field_summary(meshgrow_field* field) {

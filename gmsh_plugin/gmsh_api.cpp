@@ -141,6 +141,20 @@ double option(const std::string& name) {
   return value;
 }
 
+double option_or(const std::string& name, double otherwise) {
+  constexpr const char* verbosity = "General.Verbosity";
+  const double told = option(verbosity);
+  set_option(verbosity, 0.0);  // or the missing option would be an error in the user's log
+  double value = otherwise;
+  try {
+    value = option(name);
+  } catch (const Error&) {
+    // This version has no such option.
+  }
+  set_option(verbosity, told);
+  return value;
+}
+
 void set_option(const std::string& name, double value) {
   library().call("gmshOptionSetNumber", name.c_str(), value);
 }
@@ -203,6 +217,22 @@ Box bounding_box(const Entity& entity) {
     return Box();
   }
   return (low.array() <= high.array()).all() ? Box(low, high) : Box();
+}
+
+std::string entity_type(const Entity& entity) {
+  char* type = nullptr;
+  library().call("gmshModelGetType", entity.dim, entity.tag, &type);
+  return take_string(type);
+}
+
+Entity add_discrete_point() {
+  const int* no_boundary = nullptr;
+  return {0, library().call_int("gmshModelAddDiscreteEntity", 0, -1, no_boundary, std::size_t{0})};
+}
+
+void remove_entity(const Entity& entity) {
+  std::array<int, 2> dim_tag = {entity.dim, entity.tag};
+  library().call("gmshModelRemoveEntities", dim_tag.data(), dim_tag.size(), 0);
 }
 
 std::vector<Entity> physical_groups() {

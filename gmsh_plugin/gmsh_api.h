@@ -29,6 +29,8 @@ void open(const std::string& file);
 void write(const std::string& file);
 
 double option(const std::string& name);
+/// The same, or `otherwise` if this version of Gmsh has no such option.
+double option_or(const std::string& name, double otherwise);
 void set_option(const std::string& name, double value);
 
 std::string current_model();
@@ -44,6 +46,12 @@ std::vector<Entity> boundary(const Entity& entity);
 std::vector<Entity> embedded(const Entity& entity);
 /// Empty for a discrete entity without a mesh.
 Box bounding_box(const Entity& entity);
+
+/// Such as "Plane", "Discrete surface".
+std::string entity_type(const Entity& entity);
+/// A point without geometry, with a tag of its own.
+Entity add_discrete_point();
+void remove_entity(const Entity& entity);
 
 std::vector<Entity> physical_groups();
 std::string physical_name(const Entity& group);

@@ -60,7 +60,9 @@ MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
 
 /* Options, before the field is used: "tolerance" (relative, of the background grid; 0.05),
  * "threads" (that build grids; 0: all), "exact" (1: sizes by the tree, no grid; 0), "strict" (1: a
- * mesh size function whose source has no mesh is an error; 0: a warning). */
+ * mesh size function whose source has no mesh is an error; 0: a warning), "calibrate" (1: the sizes
+ * that Gmsh is told are corrected by measured factors, so that its edges get the length asked for;
+ * 0). */
 MESHGROW_API int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value);
 
 /* Calls `listener` with each line of progress (passes of the mesher, how far a grid is) from the
@@ -78,8 +80,24 @@ MESHGROW_API int meshgrow_field_register(meshgrow_field* field);
 MESHGROW_API int meshgrow_field_unregister(meshgrow_field* field);
 
 /* Meshes the model up to dimension `dim` with Gmsh's own algorithms, sources first. What had a mesh
- * before keeps it: node tags, coordinates to the bit, connectivity. */
-MESHGROW_API int meshgrow_field_generate(meshgrow_field* field, int dim);
+ * before keeps it: node tags, coordinates to the bit, connectivity. With `remesh` != 0, all that is
+ * no source of a mesh size function loses its mesh first. */
+MESHGROW_API int meshgrow_field_generate(meshgrow_field* field, int dim, int remesh);
+
+/* The passes that this would make, as text; NULL on failure. To be freed by meshgrow_free. */
+MESHGROW_API char* meshgrow_field_plan(meshgrow_field* field, int dim);
+
+/* The same as JSON: [{"dim": …, "attached": …, "entities": …, "functions": …, "sources": …}, …]. */
+MESHGROW_API char* meshgrow_field_plan_json(meshgrow_field* field, int dim);
+
+/* Combines the field with sizes of the caller's own: Gmsh is told the smaller one, on every entity
+ * of the model. `size_so_far` is what Gmsh would be told without. A result that is not positive and
+ * finite counts as none. Called from several threads at once when Gmsh uses several; NULL ends
+ * that. */
+MESHGROW_API int meshgrow_field_combine(meshgrow_field* field,
+                                        double (*sizes)(int dim, int tag, double x, double y,
+                                                        double z, double size_so_far, void* data),
+                                        void* data);
 
 /* Sizes asked for on an entity at `points_n` points (three doubles each) into `sizes`; infinite
  * where no function acts. From the grid, or exact without it. The first call reads the sources. */

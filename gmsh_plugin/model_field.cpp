@@ -4,6 +4,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "calibration.h"
 #include "error.h"
 #include "geometry_sampler.h"
 #include "gmsh_api.h"
@@ -22,9 +23,13 @@ Topology topology_of_current_model() {
   return read_topology();
 }
 
+int highest(const std::vector<Entity>& entities) {
+  return std::max_element(entities.begin(), entities.end())->dim;
+}
+
 }  // namespace
 
-ModelField::ModelField() : field_(topology_of_current_model()) {
+ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_) {
   model_ = gmsh::current_model();
   field_.options().progress = [this](const std::string& what, double done) {
     tell_grid(what, done);
@@ -64,10 +69,14 @@ std::size_t ModelField::add(const std::string& text) {
 }
 
 void ModelField::read_sources(const std::vector<std::size_t>& functions) {
-  if (functions.empty()) {
-    return;
+  if (!functions.empty()) {
+    read_sources(functions, NodeCoordinates());
   }
-  const NodeCoordinates nodes;
+}
+
+void ModelField::read_sources(const std::vector<std::size_t>& functions,
+                              const NodeCoordinates& nodes) {
+  size_factor_ = gmsh::option("Mesh.MeshSizeFactor");
   for (const std::size_t index : functions) {
     const SizeFunction& function = field_.functions()[index];
     std::vector<FacetedSource> sources;
@@ -79,7 +88,7 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
         sources.push_back(sample_geometry(source, field_.topology(), function.start_size));
       }
     }
-    const DroppedFacets dropped = field_.set_sources(index, sources);
+    const DroppedFacets dropped = field_.set_sources(index, sources, size_factor_);
     if (dropped.zero_size + dropped.not_finite > 0) {
       gmsh::log(field_.function_name(index) + ": " +
                     grouped_digits(dropped.zero_size + dropped.not_finite) +
@@ -91,16 +100,20 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
   }
 }
 
-void ModelField::report_unmeshed(std::size_t function) {
-  if (field_.functions()[function].kind != Kind::mesh) {
-    return;
-  }
+std::vector<Entity> ModelField::unmeshed_sources(std::size_t function) const {
   std::vector<Entity> unmeshed;
-  for (const Entity& source : field_.functions()[function].sources) {
-    if (!gmsh::has_elements(source)) {
-      unmeshed.push_back(source);
+  if (field_.functions()[function].kind == Kind::mesh) {
+    for (const Entity& source : field_.functions()[function].sources) {
+      if (!gmsh::has_elements(source)) {
+        unmeshed.push_back(source);
+      }
     }
   }
+  return unmeshed;
+}
+
+void ModelField::report_unmeshed(std::size_t function) {
+  const std::vector<Entity> unmeshed = unmeshed_sources(function);
   if (unmeshed.empty()) {
     return;
   }
@@ -129,20 +142,31 @@ void ModelField::check_model() const {
 
 void ModelField::refresh() {
   const CurrentModel current(model_);
+  read_all(is_registered());
+}
+
+void ModelField::read_all(bool wait_for_meshes) {
   check_model();
   std::vector<std::size_t> all(field_.functions().size());
   std::iota(all.begin(), all.end(), 0U);
   read_sources(all);
   reported_.clear();
+  late_.clear();
   for (const std::size_t function : all) {
-    report_unmeshed(function);
+    const std::vector<Entity> unmeshed = unmeshed_sources(function);
+    if (wait_for_meshes && !strict_ && !unmeshed.empty() &&
+        highest(unmeshed) < highest(field_.functions()[function].attachments)) {
+      late_.insert(function);
+    } else {
+      report_unmeshed(function);
+    }
   }
   field_.build();
   sources_read_ = true;
 }
 
 void ModelField::refresh_if_needed() {
-  if (!sources_read_) {
+  if (!sources_read_ || gmsh::option("Mesh.MeshSizeFactor") != size_factor_) {
     refresh();
   } else {
     field_.build();
@@ -150,28 +174,73 @@ void ModelField::refresh_if_needed() {
 }
 
 void ModelField::register_callback() {
-  refresh();
   const CurrentModel current(model_);
+  SizeCallback::check_free_for(model_);
+  read_all(true);
+  set_calibration();
+  answers_.set_reader([this](int dim) { read_late_sources(dim); },
+                      [](const Entity& curve) { return gmsh::has_elements(curve); });
   callback_.reset();
-  callback_ = std::make_unique<SizeCallback>(field_, model_);
+  callback_ = std::make_unique<SizeCallback>(answers_, model_);
 }
 
-void ModelField::generate(int dim) {
+void ModelField::unregister_callback() {
+  callback_.reset();
+  answers_.set_reader(nullptr, nullptr);
+}
+
+void ModelField::read_late_sources(int dim) {
+  for (const std::size_t function : late_) {
+    const std::vector<Entity>& sources = field_.functions()[function].sources;
+    // A source of this dimension may be half meshed now.
+    if (std::any_of(sources.begin(), sources.end(),
+                    [dim](const Entity& source) { return source.dim >= dim; })) {
+      continue;
+    }
+    read_sources({function}, NodeCoordinates(field_.topology().closure(sources)));
+    report_unmeshed(function);
+  }
+  field_.build_trees();
+}
+
+void ModelField::set_calibration() {
+  std::array<double, 4> factors{1.0, 1.0, 1.0, 1.0};
+  if (calibrate_) {
+    const auto algorithm_2d = static_cast<int>(gmsh::option("Mesh.Algorithm"));
+    const auto algorithm_3d = static_cast<int>(gmsh::option("Mesh.Algorithm3D"));
+    factors = {1.0, calibration_factor(1, 0), calibration_factor(2, algorithm_2d),
+               calibration_factor(3, algorithm_3d)};
+  }
+  answers_.set_calibration(factors);
+}
+
+std::vector<MeshingPass> ModelField::plan(int dim) const {
+  const CurrentModel current(model_);
+  check_model();
+  return OrderedMesher::plan(field_, dim);
+}
+
+void ModelField::generate(int dim, bool remesh) {
   if (generating_) {
     throw Error("This size field is meshing already: wait for its end.");
   }
   const CurrentModel current(model_);
   check_model();
   generating_ = true;
+  late_.clear();
   const bool was_registered = is_registered();
   unregister_callback();
   const auto register_again = [&] {
     generating_ = false;
     if (was_registered) {
-      callback_ = std::make_unique<SizeCallback>(field_, model_);
+      callback_ = std::make_unique<SizeCallback>(answers_, model_);
     }
   };
   try {
+    set_calibration();
+    if (remesh) {
+      OrderedMesher::clear_all_but_sources(field_);
+    }
     OrderedMesher(*this).generate(dim);
   } catch (...) {
     register_again();

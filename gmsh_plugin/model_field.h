@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "meshing_plan.h"
+#include "model_reader.h"
+#include "size_answers.h"
 #include "size_callback.h"
 #include "size_field.h"
 
@@ -41,6 +44,16 @@ class ModelField {
   void set_progress_listener(ProgressListener listener) { listener_ = std::move(listener); }
   void tell(const std::string& line) const;
 
+  /// A user's own sizes: the smaller one wins, everywhere in the model. None if empty. An exception
+  /// from them is thrown again at the end of the pass or of `generate`.
+  void combine(UserSizes sizes) { answers_.combine(std::move(sizes)); }
+
+  /// Makes Gmsh's edges as long as asked for in the middle, by measured factors (calibration.h).
+  void set_calibrate(bool calibrate) { calibrate_ = calibrate; }
+
+  /// What Gmsh is told when it asks for a size; see SizeAnswers.
+  const SizeAnswers& answers() const { return answers_; }
+
   /// Reads all sources as they are now and builds trees and grids. Warns of (with `strict`: throws
   /// for) mesh size functions without a meshed source.
   void refresh();
@@ -49,14 +62,21 @@ class ModelField {
   /// built.
   void refresh_if_needed();
 
-  /// Registers the field as Gmsh's size callback, sources read as they are now.
+  /// Registers the field as Gmsh's size callback, sources read as they are now. A source that gets
+  /// its mesh in a lower dimension of a later run of Gmsh is read when sizes of a higher one are
+  /// first asked for; those sizes are exact ones until `refresh` builds grids. Throws Error if
+  /// another model's field has the only callback of Gmsh 4.8.
   void register_callback();
-  void unregister_callback() { callback_.reset(); }
+  void unregister_callback();
   bool is_registered() const { return callback_ != nullptr; }
 
-  /// Meshes the model up to `dim` with Gmsh, sources first; whatever has a mesh keeps it. See
-  /// ordered_mesher.h.
-  void generate(int dim);
+  /// The passes of `generate(dim)`, from the meshes as they are now. Throws Error if the functions
+  /// wait for each other.
+  std::vector<MeshingPass> plan(int dim) const;
+
+  /// Meshes the model up to `dim` with Gmsh, sources first; whatever has a mesh keeps it, with
+  /// `remesh` only sources of mesh size functions. See ordered_mesher.h.
+  void generate(int dim, bool remesh = false);
 
  private:
   friend class OrderedMesher;
@@ -66,6 +86,17 @@ class ModelField {
 
   /// Gives these functions their sources as they are in the model now.
   void read_sources(const std::vector<std::size_t>& functions);
+  void read_sources(const std::vector<std::size_t>& functions, const NodeCoordinates& nodes);
+
+  /// Within a run of Gmsh: reads the functions that waited for a mesh of a lower dimension.
+  void read_late_sources(int dim);
+
+  /// `refresh`; `wait_for_meshes`: sources without a mesh that a run of Gmsh will mesh in time are
+  /// no reason to warn.
+  void read_all(bool wait_for_meshes);
+
+  std::vector<Entity> unmeshed_sources(std::size_t function) const;
+  void set_calibration();
 
   /// Warns once of (with `strict`: throws for) a mesh size function with unmeshed sources.
   void report_unmeshed(std::size_t function);
@@ -74,7 +105,11 @@ class ModelField {
 
   std::string model_;
   SizeField field_;
+  SizeAnswers answers_;
   bool strict_ = false;
+  bool calibrate_ = false;
+  double size_factor_ = 1.0;    ///< Mesh.MeshSizeFactor when sources were read
+  std::set<std::size_t> late_;  ///< functions with sources to be read within a run of Gmsh
   bool sources_read_ = false;
   bool generating_ = false;
   std::set<std::size_t> reported_;

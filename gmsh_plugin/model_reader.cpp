@@ -71,12 +71,19 @@ Topology read_topology() {
   return topology;
 }
 
-NodeCoordinates::NodeCoordinates() {
-  const gmsh::Nodes nodes = gmsh::all_nodes();
-  coordinates_.reserve(nodes.tags.size());
-  index_of_.reserve(nodes.tags.size());
+NodeCoordinates::NodeCoordinates() { add(gmsh::all_nodes()); }
+
+NodeCoordinates::NodeCoordinates(const std::set<Entity>& entities) {
+  for (const Entity& entity : entities) {
+    add(gmsh::nodes(entity));
+  }
+}
+
+void NodeCoordinates::add(const gmsh::Nodes& nodes) {
+  coordinates_.reserve(coordinates_.size() + nodes.tags.size());
+  index_of_.reserve(coordinates_.size() + nodes.tags.size());
   for (std::size_t i = 0; i < nodes.tags.size(); ++i) {
-    index_of_.emplace(nodes.tags[i], i);
+    index_of_.emplace(nodes.tags[i], coordinates_.size());
     coordinates_.emplace_back(nodes.coordinates[3 * i], nodes.coordinates[3 * i + 1],
                               nodes.coordinates[3 * i + 2]);
   }

@@ -1,6 +1,7 @@
 #ifndef MESHGROW_MODEL_READER_H
 #define MESHGROW_MODEL_READER_H
 
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -16,16 +17,21 @@ namespace meshgrow {
 /// Throws Error if the model has no entities.
 Topology read_topology();
 
-/// Coordinates of all nodes of the current model by node tag.
+/// Coordinates of nodes of the current model by node tag.
 class NodeCoordinates {
  public:
+  /// Of all nodes.
   NodeCoordinates();
+  /// Of the nodes on these entities only.
+  explicit NodeCoordinates(const std::set<Entity>& entities);
   /// Throws Error, naming the entity, if there is no such node.
   const Vec3& at(std::size_t tag, const Entity& asked_by) const;
   std::size_t index(std::size_t tag, const Entity& asked_by) const;
   const std::vector<Vec3>& coordinates() const { return coordinates_; }
 
  private:
+  void add(const gmsh::Nodes& nodes);
+
   std::vector<Vec3> coordinates_;
   std::unordered_map<std::size_t, std::size_t> index_of_;
 };

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "curve_adjuster.h"
 #include "gmsh_state.h"
 #include "model_field.h"
 #include "premeshed_store.h"
@@ -12,13 +13,14 @@
 namespace meshgrow {
 
 /// Drives Gmsh's 1D, 2D and 3D algorithms over a model so that the sources of mesh size functions
-/// are meshed before what grows from them (paper, sections 4.3 and 5.1).
+/// are meshed before what grows from them (paper, sections 4.3 and 5.1), pass by pass as planned
+/// (meshing_plan.h).
 ///
-/// First all sources with their boundaries, then everything else, each dimension by dimension; a
-/// pass of Gmsh holds only entities on which an effective function acts, with Gmsh's own growth
-/// from the boundary switched off, or only others, with the user's setting. What had a mesh at the
-/// beginning is left out of all passes and is unchanged at the end. Gmsh's options and visibility
-/// are restored, also on errors; what was meshed before an error is kept.
+/// A pass of Gmsh holds only entities on which an effective function acts, with Gmsh's own growth
+/// from the boundary switched off, or only others, with the user's setting. Opposite sides of
+/// mapped surfaces are brought to the same number of intervals. What had a mesh at the beginning is
+/// left out of all passes and is unchanged at the end. Gmsh's options and visibility are restored,
+/// also on errors; what was meshed before an error is kept.
 class OrderedMesher {
  public:
   /// The field's model must be the current one.
@@ -27,10 +29,22 @@ class OrderedMesher {
   /// Up to dimension 1, 2 or 3. Throws Error naming entity and pass if Gmsh fails.
   void generate(int dim);
 
+  /// The passes that `generate` would make now.
+  static std::vector<MeshingPass> plan(const SizeField& field, int dim);
+
+  /// Takes away the mesh of all that is no source of a mesh size function; discrete entities, which
+  /// have nothing else, keep theirs.
+  static void clear_all_but_sources(const SizeField& field);
+
  private:
-  void mesh(const std::set<Entity>& entities, int dim);
-  void pass(const std::vector<Entity>& entities, bool attached);
+  void run(const std::vector<MeshingPass>& plan);
+  void run_pass(const MeshingPass& pass, bool curves_follow);
+  void mesh(const std::vector<Entity>& entities, bool attached, const std::string& name);
+  void adjust_curves(const std::vector<Entity>& stage);
+  void keep_from_curve_passes(const std::vector<Entity>& surfaces);
+  void mesh_lost_faces();
   void read_new_sources();
+  void mark_stale(const std::vector<Entity>& meshed);
   bool acts_effectively(const Entity& entity) const;
   void check_options() const;
   void check_faces_stayed(const std::vector<Entity>& entities, const std::string& pass_name) const;
@@ -42,10 +56,13 @@ class OrderedMesher {
   std::vector<Entity> all_;
   GmshState state_;
   PremeshedStore premeshed_;
-  std::set<Entity> done_;
-  std::set<std::size_t> stale_;  ///< functions with a source meshed since they were read
+  MeshConstraints constraints_;
+  std::set<Entity> structured_faces_;  ///< mapped faces of mapped volumes
+  CurveAdjuster adjuster_;
+  std::vector<Entity> lost_faces_;  ///< structured ones that curve passes took the mesh from
+  std::set<std::size_t> stale_;     ///< functions with a source meshed since they were read
   int pass_count_ = 0;
-  bool curves_follow_ = false;  ///< later passes will throw surface meshes away
+  std::size_t planned_count_ = 0;
 };
 
 }  // namespace meshgrow

@@ -16,6 +16,14 @@ void PremeshedStore::keep(const std::vector<Entity>& entities) {
   }
 }
 
+std::set<Entity> PremeshedStore::entities() const {
+  std::set<Entity> result;
+  for (const auto& [entity, mesh] : meshes_) {
+    result.insert(entity);
+  }
+  return result;
+}
+
 PremeshedStore::Mesh PremeshedStore::read(const Entity& entity) {
   return {gmsh::nodes(entity), gmsh::elements(entity)};
 }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "gmsh_api.h"
@@ -24,6 +25,7 @@ class PremeshedStore {
   /// Copies the meshes of these entities as well.
   void keep(const std::vector<Entity>& entities);
 
+  std::set<Entity> entities() const;
   bool contains(const Entity& entity) const { return meshes_.count(entity) > 0; }
 
   /// Puts back every stored mesh that is gone entirely, as after a pass over curves. First order

@@ -1,9 +1,12 @@
 #include "size_callback.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "error.h"
 #include "gmsh_api.h"
 #include "gmsh_state.h"
 
@@ -14,20 +17,24 @@ namespace {
 /// What Gmsh itself takes for "no size".
 constexpr double gmsh_no_size = 1e22;
 
-/// The slot that Gmsh holds for a model; 4.8 holds one for all models.
-std::map<std::string, SizeCallback::Slot*>& registered_slots() {
-  static std::map<std::string, SizeCallback::Slot*> slots;
+/// The slots that live, for each model, the one that Gmsh holds last; 4.8 holds one for all models.
+std::map<std::string, std::vector<SizeCallback::Slot*>>& registered_slots() {
+  static std::map<std::string, std::vector<SizeCallback::Slot*>> slots;
   return slots;
 }
 
-std::string key_of(const std::string& model) {
+bool has_one_callback_for_all_models() {
   const gmsh::Version version = gmsh::require_gmsh();
-  return version.major == 4 && version.minor == 8 ? "" : model;
+  return version.major == 4 && version.minor == 8;
+}
+
+std::string key_of(const std::string& model) {
+  return has_one_callback_for_all_models() ? "" : model;
 }
 
 double answer_from(void* slot, int dim, int tag, double x, double y, double z, double proposed) {
-  const SizeField* field = static_cast<const SizeCallback::Slot*>(slot)->field;
-  return field == nullptr ? proposed : answer_size(*field, dim, tag, x, y, z, proposed);
+  const SizeAnswers* answers = static_cast<const SizeCallback::Slot*>(slot)->answers;
+  return answers == nullptr ? proposed : answers->answer(dim, tag, x, y, z, proposed);
 }
 
 double callback_until_48(int dim, int tag, double x, double y, double z, void* slot) {
@@ -48,36 +55,59 @@ double callback_since_49(int dim, int tag, double x, double y, double z, double 
   return answer_from(slot, dim, tag, x, y, z, proposed);
 }
 
+/// The slots of this model whose objects live, without those that a finalized Gmsh left behind.
+std::vector<SizeCallback::Slot*>& living_slots(const std::string& model) {
+  std::vector<SizeCallback::Slot*>& slots = registered_slots()[key_of(model)];
+  slots.erase(
+      std::remove_if(slots.begin(), slots.end(),
+                     [](const SizeCallback::Slot* slot) { return slot->answers == nullptr; }),
+      slots.end());
+  return slots;
+}
+
+void hand_to_gmsh(SizeCallback::Slot* slot) {
+  const CurrentModel current(slot->model);
+  gmsh::set_size_callback(callback_until_48, callback_since_49, slot);
+}
+
 }  // namespace
 
-double answer_size(const SizeField& field, int dim, int tag, double x, double y, double z,
-                   double proposed) noexcept {
-  try {
-    const double size = field.size({dim, tag}, Vec3(x, y, z));
-    return size > 0.0 && size < proposed ? size : proposed;
-  } catch (...) {
-    return proposed;
+void SizeCallback::check_free_for(const std::string& model) {
+  if (!has_one_callback_for_all_models()) {
+    return;
+  }
+  const std::vector<std::string> models = gmsh::models();
+  for (const Slot* slot : living_slots(model)) {
+    if (slot->model != model && std::count(models.begin(), models.end(), slot->model) > 0) {
+      throw Error("Gmsh 4.8 has one size callback for all models, and the field of model \"" +
+                  slot->model + "\" is registered: unregister that one first.");
+    }
   }
 }
 
-SizeCallback::SizeCallback(const SizeField& field, std::string model) : model_(std::move(model)) {
-  const CurrentModel current(model_);
+SizeCallback::SizeCallback(const SizeAnswers& answers, std::string model)
+    : model_(std::move(model)) {
   auto slot = std::make_unique<Slot>();
-  slot->field = &field;
+  slot->answers = &answers;
   slot->model = model_;
-  gmsh::set_size_callback(callback_until_48, callback_since_49, slot.get());
+  std::vector<Slot*>& slots = living_slots(model_);
+  slots.reserve(slots.size() + 1);
+  hand_to_gmsh(slot.get());
   slot_ = slot.release();
-  registered_slots()[key_of(model_)] = slot_;
+  slots.push_back(slot_);
 }
 
 SizeCallback::~SizeCallback() {
-  slot_->field = nullptr;
+  slot_->answers = nullptr;
   try {
-    Slot*& registered = registered_slots()[key_of(model_)];
-    if (registered == slot_) {
+    const std::vector<Slot*>& all = registered_slots()[key_of(model_)];
+    const bool is_held = !all.empty() && all.back() == slot_;
+    const std::vector<Slot*>& slots = living_slots(model_);
+    if (is_held && !slots.empty()) {
+      hand_to_gmsh(slots.back());
+    } else if (is_held) {
       const CurrentModel current(model_);
       gmsh::remove_size_callback();
-      registered = nullptr;
     }
     delete slot_;
   } catch (...) {

@@ -1,7 +1,6 @@
 #include "size_field.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <sstream>
 
@@ -12,25 +11,15 @@
 
 namespace meshgrow {
 
-namespace {
-
-std::string name_of(const SizeFunction& function, std::size_t index) {
-  std::string name = kind_name(function.kind);
-  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name + " size function " + std::to_string(index + 1);
-}
-
-}  // namespace
-
 SizeField::SizeField(Topology topology, FieldOptions options)
     : topology_(std::move(topology)), options_(std::move(options)) {}
 
 std::string SizeField::function_name(std::size_t function) const {
-  return name_of(functions_[function], function);
+  return meshgrow::function_name(functions_[function], function);
 }
 
 std::size_t SizeField::add(SizeFunction function) {
-  validate(function, name_of(function, functions_.size()), topology_);
+  validate(function, meshgrow::function_name(function, functions_.size()), topology_);
   functions_.push_back(std::move(function));
   facets_.emplace_back();
   try {
@@ -84,7 +73,7 @@ void SizeField::regroup() {
 }
 
 DroppedFacets SizeField::set_sources(std::size_t function,
-                                     const std::vector<FacetedSource>& sources) {
+                                     const std::vector<FacetedSource>& sources, double unit) {
   const SizeFunction& definition = functions_[function];
   const double slope = growth_slope(definition.growth_rate);
   DroppedFacets dropped;
@@ -96,6 +85,11 @@ DroppedFacets SizeField::set_sources(std::size_t function,
             : append_fixed_start_sizes(source, definition.start_size, slope, facets);
     dropped.zero_size += more.zero_size;
     dropped.not_finite += more.not_finite;
+  }
+  if (definition.kind == Kind::mesh) {
+    for (SizedFacet& facet : facets) {
+      facet.start_size /= unit;
+    }
   }
   if (facets == facets_[function]) {
     return dropped;  // trees and grids are good as they are
@@ -118,13 +112,25 @@ void SizeField::build(const std::vector<Entity>& entities) {
     }
   }
   for (std::size_t i = 0; i < groups_.size(); ++i) {
-    if (wanted[i] && groups_[i].changed) {
-      build_group(i);
+    if (wanted[i] && (groups_[i].changed || lacks_grid(groups_[i]))) {
+      build_group(i, options_.evaluator);
     }
   }
 }
 
-void SizeField::build_group(std::size_t index) {
+void SizeField::build_trees() {
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    if (groups_[i].changed) {
+      build_group(i, Evaluator::exact);
+    }
+  }
+}
+
+bool SizeField::lacks_grid(const Group& group) const {
+  return options_.evaluator == Evaluator::grid && !group.grid && group.tree && !group.tree->empty();
+}
+
+void SizeField::build_group(std::size_t index, Evaluator evaluator) {
   // Built aside and moved in at the end: if building fails, the group answers as before.
   Group built;
   SizedFacets facets;
@@ -142,7 +148,7 @@ void SizeField::build_group(std::size_t index) {
     }
   }
   built.tree = std::make_shared<FacetTree>(std::move(facets));
-  if (options_.evaluator == Evaluator::grid && !built.tree->empty()) {
+  if (evaluator == Evaluator::grid && !built.tree->empty()) {
     Box box;
     for (const Entity& entity : groups_[index].entities) {
       box.extend(topology_.box(entity));

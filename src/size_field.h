@@ -54,8 +54,10 @@ class SizeField {
   std::string function_name(std::size_t function) const;
 
   /// Gives a function the pieces of its sources and computes their start sizes. Without any, the
-  /// function has no effect. Takes effect with the next `build`.
-  DroppedFacets set_sources(std::size_t function, const std::vector<FacetedSource>& sources);
+  /// function has no effect. Takes effect with the next `build`. Start sizes that are read from a
+  /// mesh are divided by `unit`: who multiplies all sizes afterwards gets those of the mesh back.
+  DroppedFacets set_sources(std::size_t function, const std::vector<FacetedSource>& sources,
+                            double unit = 1.0);
 
   /// False while the sources of the function have given it no facet.
   bool is_effective(std::size_t function) const { return !facets_[function].empty(); }
@@ -64,6 +66,10 @@ class SizeField {
   /// `entities` is empty). Groups not built since a change answer as before it; never built ones,
   /// `no_size`.
   void build(const std::vector<Entity>& entities = {});
+
+  /// Brings the trees of all groups up to date, and no grids: changed groups answer exactly until
+  /// the next `build`.
+  void build_trees();
 
   /// True if some function acts on the entity: attached itself, or below an attachment.
   bool acts_on(const Entity& entity) const { return group_of_.count(entity) > 0; }
@@ -119,7 +125,8 @@ class SizeField {
   };
 
   void regroup();
-  void build_group(std::size_t index);
+  void build_group(std::size_t index, Evaluator evaluator);
+  bool lacks_grid(const Group& group) const;
   const Group* group(const Entity& entity) const;
 
   Topology topology_;

@@ -1,6 +1,7 @@
 #include "size_function.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "error.h"
@@ -40,6 +41,12 @@ void check_entities(const std::vector<Entity>& entities, int lowest_dim, int hig
 }  // namespace
 
 std::string kind_name(Kind kind) { return kind == Kind::mesh ? "mesh" : "fixed"; }
+
+std::string function_name(const SizeFunction& function, std::size_t index) {
+  std::string name = kind_name(function.kind);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name + " size function " + std::to_string(index + 1);
+}
 
 void validate(const SizeFunction& function, const std::string& name, const Topology& topology) {
   if (!(function.growth_rate >= 1.0 && std::isfinite(function.growth_rate))) {

@@ -31,6 +31,9 @@ struct SizeFunction {
   QuadSize quad_size = QuadSize::triangles;  ///< mesh: how quadrilaterals are sized
 };
 
+/// "Mesh size function 1", as messages name the function with this index.
+std::string function_name(const SizeFunction& function, std::size_t index);
+
 /// Throws Error with one sentence, beginning with `name`, unless the parameters are usable, all
 /// entities are in the model, and no source of a mesh size function is its own attachment.
 void validate(const SizeFunction& function, const std::string& name, const Topology& topology);

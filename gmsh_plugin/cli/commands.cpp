@@ -83,6 +83,7 @@ FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::
   check(meshgrow_field_set_option(field.get(), "tolerance", arguments.tolerance));
   check(meshgrow_field_set_option(field.get(), "exact", arguments.exact ? 1.0 : 0.0));
   check(meshgrow_field_set_option(field.get(), "strict", arguments.strict ? 1.0 : 0.0));
+  check(meshgrow_field_set_option(field.get(), "calibrate", arguments.calibrate ? 1.0 : 0.0));
   for (const std::string& text : texts) {
     check(meshgrow_field_add(field.get(), text.c_str()));
   }
@@ -164,7 +165,9 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
     throw Error("The mesh would be written over the model " + arguments.model +
                 ": name another output with -o.");
   }
-  check_writable(output);
+  if (!arguments.plan) {
+    check_writable(output);
+  }
 
   const GmshSession session(arguments.verbosity);
   std::cout << "Reading " << arguments.model << std::endl;
@@ -173,6 +176,10 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
   if (texts.empty()) {
     std::cout << "No size function is given: Gmsh's own sizes rule." << std::endl;
   }
+  if (arguments.plan) {
+    std::cout << take_text(meshgrow_field_plan(field.get(), dim)) << std::flush;
+    return;
+  }
   check(meshgrow_field_set_progress(
       field.get(),
       [](const char* line, void*) {
@@ -180,7 +187,7 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
         return 0;
       },
       nullptr));
-  check(meshgrow_field_generate(field.get(), dim));
+  check(meshgrow_field_generate(field.get(), dim, arguments.remesh ? 1 : 0));
   write_mesh(output);
   std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
   if (dim > 1) {

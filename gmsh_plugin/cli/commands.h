@@ -12,6 +12,7 @@ struct FieldArguments {
   double tolerance = 0.05;
   bool exact = false;
   bool strict = false;
+  bool calibrate = false;
 };
 
 struct MeshArguments {
@@ -20,6 +21,8 @@ struct MeshArguments {
   bool dim_1 = false;
   bool dim_2 = false;
   bool dim_3 = false;
+  bool plan = false;
+  bool remesh = false;
   int verbosity = 2;
 };
 
@@ -30,7 +33,8 @@ struct ReportArguments {
   bool json = false;
 };
 
-/// `meshgrow mesh`. Throws Error; the output file is replaced only when the new mesh is complete.
+/// `meshgrow mesh`, or with `plan` only what it would do. Throws Error; the output file is replaced
+/// only when the new mesh is complete.
 void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments);
 
 /// `meshgrow report`. Throws Error.

@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
     command->add_flag("--exact", field_arguments.exact, "Exact sizes, no background grid");
     command->add_flag("--strict", field_arguments.strict,
                       "A source without a mesh is an error, not a warning");
+    command->add_flag("--calibrate", field_arguments.calibrate,
+                      "Correct sizes by measured factors: Gmsh's edges get the length asked for");
   };
 
   meshgrow::cli::MeshArguments mesh_arguments;
@@ -44,6 +46,9 @@ int main(int argc, char** argv) {
   mesh->add_flag("-3", mesh_arguments.dim_3, "Mesh all (the default)");
   mesh->add_option("-o,--output", mesh_arguments.output,
                    "Mesh file; its ending tells the format (default: the model's name, .msh)");
+  mesh->add_flag("--plan", mesh_arguments.plan, "Print the passes and mesh nothing");
+  mesh->add_flag("--remesh", mesh_arguments.remesh,
+                 "Mesh again all that is no source of a mesh size function");
   mesh->add_option("-v", mesh_arguments.verbosity, "Gmsh's verbosity, 0 to 99")
       ->capture_default_str();
   add_field_options(mesh);

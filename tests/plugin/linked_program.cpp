@@ -41,7 +41,7 @@ int main() {
   std::vector<double> sizes(2);
   expect(meshgrow_field_size(field, 3, 1, points.data(), 2, sizes.data()) == 0, "sizes");
   expect(sizes[0] < 0.0526 && sizes[1] > 0.2 && sizes[1] < 0.3, "sizes grow from the surface");
-  expect(meshgrow_field_generate(field, 3) == 0, "generate");
+  expect(meshgrow_field_generate(field, 3, 0) == 0, "generate");
 
   char* report = meshgrow_report_json(3, nullptr, 0, field);
   expect(report != nullptr, "report");

@@ -1,6 +1,7 @@
 """What is wrong is told in one sentence, and the model is as it was."""
 
 import math
+import re
 
 import gmsh
 import meshgrow
@@ -249,15 +250,26 @@ def test_a_source_without_a_mesh_is_warned_of_once_when_asked_for_sizes(unmeshed
     assert len(source_warnings(log, unmeshed.between)) == 1
 
 
-def test_a_source_without_a_mesh_is_warned_of_once_when_registered(unmeshed):
+def test_a_source_that_the_same_run_meshes_in_time_is_not_warned_of_when_registered(unmeshed):
     field = meshgrow.SizeField()
     field.add_mesh(**usable(unmeshed))
     with Log() as log:
         field.register()
         with options(Mesh_MeshSizeMax=0.5):
             gmsh.model.mesh.generate(3)
-    assert len(source_warnings(log, unmeshed.between)) == 1
+    assert source_warnings(log, unmeshed.between) == []
     assert has_elements(unmeshed.right)
+
+
+def test_a_source_that_no_run_meshes_in_time_is_warned_of_once_when_registered(unmeshed):
+    field = meshgrow.SizeField()
+    other = next(f for f in models.faces_of(unmeshed.right[1]) if f != unmeshed.between)
+    field.add_mesh([unmeshed.between], [other], 1.2, 0.5)
+    with Log() as log:
+        field.register()
+        with options(Mesh_MeshSizeMax=0.5):
+            gmsh.model.mesh.generate(2)
+    assert len(source_warnings(log, unmeshed.between)) == 1
 
 
 def test_strict_refuses_to_register_while_a_source_has_no_mesh(unmeshed):
@@ -268,35 +280,25 @@ def test_strict_refuses_to_register_while_a_source_has_no_mesh(unmeshed):
     field.register()
 
 
-def two_sources_that_grow_into_each_other():
-    """Each of two faces is the source for the other: one must be meshed without its size."""
+def test_sources_that_grow_into_each_other_are_refused_in_words():
     model = models.two_boxes()
     left = next(f for f in models.faces_of(model.left[1]) if f != model.between)
     right = next(f for f in models.faces_of(model.right[1]) if f != model.between)
-
-    def field(**how):
-        made = meshgrow.SizeField(**how)
-        made.add_mesh([left], [right], 1.2, 0.5)
-        made.add_mesh([right], [left], 1.2, 0.5)
-        return made
-    return field, left, right
-
-
-def test_sources_that_grow_into_each_other_are_warned_of_and_meshed():
-    field, left, right = two_sources_that_grow_into_each_other()
-    with Log() as log, options(Mesh_MeshSizeMax=0.3):
-        field().generate(2)
-    assert any("has no mesh" in w for w in log.warnings)
-    assert len([w for w in log.warnings if "has no mesh" in w]) <= 2
-    assert has_elements(left) and has_elements(right)
-
-
-def test_strict_refuses_sources_that_grow_into_each_other():
-    field, left, _ = two_sources_that_grow_into_each_other()
-    made = field(strict=True)
-    with pytest.raises(meshgrow.Error, match="has no mesh"):
-        made.generate(2)
-    assert not has_elements(left)
+    field = meshgrow.SizeField()
+    field.add_mesh([left], [right], 1.2, 0.5)
+    field.add_mesh([right], [left], 1.2, 0.5)
+    names = {"Surface %d" % left[1], "Surface %d" % right[1]}
+    for call in (lambda: field.generate(2), lambda: field.plan(2)):
+        with pytest.raises(meshgrow.Error) as refusal:
+            call()
+        words = str(refusal.value).split("; ")[0]
+        found = re.findall(r"(Surface \d+) grows from (Surface \d+) by Mesh size function \d+"
+                           r"(?: \(at its Curve \d+\))?, which grows from (Surface \d+)", words)
+        assert len(found) == 1 and found[0][0] == found[0][2] and set(found[0]) == names, words
+    assert not any(has_elements(e) for e in gmsh.model.getEntities())
+    premesh([left], 0.4)
+    field.generate(2)
+    assert has_elements(right)
 
 
 def test_strict_lets_generate_mesh_the_sources_itself(unmeshed):

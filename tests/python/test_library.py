@@ -137,7 +137,7 @@ def test_every_function_of_the_header_is_exported_and_known_to_the_package():
 
 
 def test_calls_without_a_field_say_so():
-    assert _library.lib.meshgrow_field_generate(None, 3) == 1
+    assert _library.lib.meshgrow_field_generate(None, 3, 0) == 1
     assert "size field" in _library.lib.meshgrow_last_error().decode()
     assert _library.lib.meshgrow_field_register(None) == 1
     _library.lib.meshgrow_field_destroy(None)

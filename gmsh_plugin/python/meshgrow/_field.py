@@ -5,7 +5,10 @@ import operator
 
 import numpy as np
 
-from ._library import PROGRESS_LISTENER, check, dim_tags, doubles, lib, points_array, take_text
+from ._library import (PROGRESS_LISTENER, USER_SIZES, check, dim_tags, doubles, lib, points_array,
+                       take_text)
+from ._plan import Plan
+from ._user_sizes import takes_size_so_far
 
 
 class SizeField:
@@ -22,14 +25,18 @@ class SizeField:
         a mesh size function whose source has no mesh is an error instead of a warning.
     threads
         that build grids; 0 takes all.
+    calibrate
+        corrects what Gmsh is told by measured factors, so that its edges get the length asked for:
+        without, they are 1.3 times as long in volumes.
     progress
         called with each line of progress (a str), for example ``print``; None: Gmsh's log. An
         exception from it stops the work; what was meshed is kept.
     """
 
     def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0,
-                 progress=None):
+                 progress=None, calibrate=False):
         self._raised = None
+        self._sizes_raised = None
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
         if evaluator not in ("grid", "exact"):
@@ -38,6 +45,7 @@ class SizeField:
         self._set("exact", evaluator == "exact")
         self._set("strict", strict)
         self._set("threads", threads)
+        self._set("calibrate", calibrate)
         if progress is not None:
             # Kept as long as the field, which calls it.
             self._listener = PROGRESS_LISTENER(self._listen_with(progress))
@@ -60,7 +68,8 @@ class SizeField:
         return listen
 
     def _check(self, failed):
-        raised, self._raised = self._raised, None
+        raised = self._raised or self._sizes_raised
+        self._raised = self._sizes_raised = None
         if raised is not None:
             raise raised
         check(failed)
@@ -92,18 +101,53 @@ class SizeField:
         ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``."""
         check(lib.meshgrow_field_add(self._handle, text.encode()))
 
-    def generate(self, dim=3):
+    def generate(self, dim=3, remesh=False):
         """Meshes up to dimension ``dim`` with Gmsh's own algorithms, sources first.
 
         What had a mesh before keeps it: node tags, coordinates to the bit, connectivity. Only where
-        Mesh.ElementOrder is 2 or more, elements of first order get mid nodes beside their own.
+        Mesh.ElementOrder is 2 or more, elements of first order get mid nodes beside their own. With
+        ``remesh``, all that is no source of a mesh size function loses its mesh first; discrete
+        entities keep theirs.
         """
-        self._check(lib.meshgrow_field_generate(self._handle, operator.index(dim)))
+        self._check(lib.meshgrow_field_generate(self._handle, operator.index(dim), bool(remesh)))
+
+    def plan(self, dim=3):
+        """The passes of ``generate(dim)``, without meshing: a list of dictionaries with ``dim``,
+        ``attached``, ``entities``, ``functions`` (indices) and ``sources`` (read before the pass).
+        Printed, it reads as text."""
+        dim = operator.index(dim)
+        return Plan(json.loads(take_text(lib.meshgrow_field_plan_json(self._handle, dim))),
+                    take_text(lib.meshgrow_field_plan(self._handle, dim)))
+
+    def combine(self, sizes):
+        """Sizes of your own beside the field: Gmsh is told the smaller one, in the whole model.
+
+        ``sizes`` is a size callback as Gmsh takes it, ``(dim, tag, x, y, z, lc)`` or, as in Gmsh
+        4.8, ``(dim, tag, x, y, z)``; None ends that. Gmsh keeps one callback only and does not tell
+        it: give the one of your ``setSizeCallback`` here. What it raises is raised by ``generate``.
+        """
+        if sizes is None:
+            check(lib.meshgrow_field_combine(self._handle, USER_SIZES(), None))
+            self._user_sizes = None
+            return
+        call = sizes if takes_size_so_far(sizes) else (lambda d, t, x, y, z, lc: sizes(d, t, x, y, z))
+
+        def guarded(dim, tag, x, y, z, lc, _):
+            try:
+                return call(dim, tag, x, y, z, lc)
+            except BaseException as raised:  # KeyboardInterrupt as well
+                self._sizes_raised = self._sizes_raised or raised
+                return -1.0
+        user_sizes = USER_SIZES(guarded)
+        check(lib.meshgrow_field_combine(self._handle, user_sizes, None))
+        self._user_sizes = user_sizes  # Kept as long as the field, which calls it.
 
     def register(self):
         """Reads the sources as they are meshed now and becomes Gmsh's size callback.
 
-        Only the callback: the caller meshes, sources in the order in which Gmsh meshes them.
+        Only the callback: you mesh, with ``gmsh.model.mesh.generate``. A source that gets its mesh
+        in a lower dimension of the same call is read then, and sizes are exact ones (slower than
+        from grids) until ``refresh`` between two calls builds grids.
         """
         self._check(lib.meshgrow_field_register(self._handle))
 

@@ -15,6 +15,8 @@ _FIELD = ctypes.c_void_p
 _TEXT = ctypes.c_void_p  # a char* that must be freed, so not c_char_p
 
 PROGRESS_LISTENER = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
+USER_SIZES = ctypes.CFUNCTYPE(_DOUBLE, _INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE,
+                              ctypes.c_void_p)
 
 _SIGNATURES = {
     "meshgrow_version": (ctypes.c_char_p, []),
@@ -32,7 +34,10 @@ _SIGNATURES = {
     "meshgrow_field_refresh": (_INT, [_FIELD]),
     "meshgrow_field_register": (_INT, [_FIELD]),
     "meshgrow_field_unregister": (_INT, [_FIELD]),
-    "meshgrow_field_generate": (_INT, [_FIELD, _INT]),
+    "meshgrow_field_generate": (_INT, [_FIELD, _INT, _INT]),
+    "meshgrow_field_plan": (_TEXT, [_FIELD, _INT]),
+    "meshgrow_field_plan_json": (_TEXT, [_FIELD, _INT]),
+    "meshgrow_field_combine": (_INT, [_FIELD, USER_SIZES, ctypes.c_void_p]),
     "meshgrow_field_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
     "meshgrow_field_exact_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
     "meshgrow_field_answer": (

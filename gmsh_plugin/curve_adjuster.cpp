@@ -1,0 +1,189 @@
+#include "curve_adjuster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "gmsh_api.h"
+#include "model_reader.h"
+
+namespace meshgrow {
+
+namespace {
+
+/// Rounds of meshing again after which a curve counts as one that does not follow its sizes.
+constexpr int most_rounds = 24;
+
+int interval_count(const Entity& curve) {
+  int count = 0;
+  for (const gmsh::Elements& block : gmsh::elements(curve)) {
+    count += static_cast<int>(block.tags.size());
+  }
+  return count;
+}
+
+/// Searches the factor on the sizes of one curve that gives it the wanted number of intervals.
+class FactorSearch {
+ public:
+  FactorSearch(int wanted, int count) : wanted_(wanted), first_count_(count) { next(count); }
+
+  double factor() const { return factor_; }
+  int wanted() const { return wanted_; }
+  int first_count() const { return first_count_; }
+  /// Whether the number changed at all under factors far from 1.
+  bool follows() const { return follows_; }
+
+  /// Chooses the next factor after the present one gave `count` intervals.
+  void next(int count) {
+    follows_ = follows_ || count != first_count_;
+    (count > wanted_ ? too_small_ : too_large_) = factor_;
+    if (too_small_ > 0.0 && too_large_ > 0.0) {
+      factor_ = std::sqrt(too_small_ * too_large_);
+    } else {
+      // Gmsh rounds up: a curve of n intervals asks for n − 1/2 on average.
+      factor_ *= (count - 0.5) / (wanted_ - 0.5);
+    }
+  }
+
+ private:
+  int wanted_;
+  int first_count_;
+  double factor_ = 1.0;
+  double too_small_ = 0.0;
+  double too_large_ = 0.0;
+  bool follows_ = false;
+};
+
+}  // namespace
+
+CurveAdjuster::CurveAdjuster(const Topology& topology, const MeshConstraints& constraints)
+    : topology_(topology), constraints_(constraints) {
+  const bool equal_triangles = gmsh::option_or("Mesh.TransfiniteTri", 0.0) != 0.0;
+  for (const MappedSurface& mapped : constraints_.mapped_surfaces) {
+    if (topology.contains(mapped.surface) && !gmsh::has_elements(mapped.surface)) {
+      for (OppositeSides& pair : opposite_sides(mapped, topology, equal_triangles)) {
+        sides_.push_back(std::move(pair));
+      }
+    }
+  }
+}
+
+std::vector<std::vector<Entity>> CurveAdjuster::connected_curves() const {
+  std::map<Entity, std::set<Entity>> neighbours;
+  for (const OppositeSides& pair : sides_) {
+    std::vector<Entity> curves = pair.first;
+    curves.insert(curves.end(), pair.second.begin(), pair.second.end());
+    for (const Entity& curve : curves) {
+      neighbours[curve].insert(curves.begin(), curves.end());
+    }
+  }
+  std::vector<std::vector<Entity>> result;
+  std::set<Entity> visited;
+  for (const auto& [start, around] : neighbours) {
+    std::vector<Entity> open{start};
+    std::vector<Entity> connected;
+    while (!open.empty()) {
+      const Entity curve = open.back();
+      open.pop_back();
+      if (visited.insert(curve).second) {
+        connected.push_back(curve);
+        open.insert(open.end(), neighbours[curve].begin(), neighbours[curve].end());
+      }
+    }
+    if (connected.size() > 1) {
+      result.push_back(std::move(connected));
+    }
+  }
+  return result;
+}
+
+std::map<Entity, CurveIntervals> CurveAdjuster::intervals_now(const std::set<Entity>& stage) const {
+  const bool recombination = gmsh::option("Mesh.RecombinationAlgorithm") != 0.0;
+  const bool recombine_all = gmsh::option("Mesh.RecombineAll") != 0.0;
+  std::set<Entity> beside_recombined;
+  for (const Entity& surface : topology_.entities(2)) {
+    if (recombination && (recombine_all || constraints_.recombined_surfaces.count(surface) > 0)) {
+      const std::vector<Entity>& curves = topology_.lower(surface);
+      beside_recombined.insert(curves.begin(), curves.end());
+    }
+  }
+  std::map<Entity, CurveIntervals> result;
+  for (const OppositeSides& pair : sides_) {
+    for (const std::vector<Entity>* side : {&pair.first, &pair.second}) {
+      for (const Entity& curve : *side) {
+        const auto prescribed = constraints_.prescribed_intervals.find(curve);
+        const bool is_prescribed = prescribed != constraints_.prescribed_intervals.end();
+        const int count = interval_count(curve);
+        CurveIntervals intervals;
+        intervals.even = !is_prescribed && beside_recombined.count(curve) > 0;
+        intervals.fixed = is_prescribed || (count > 0 && stage.count(curve) == 0);
+        intervals.count = count > 0 ? count : is_prescribed ? prescribed->second : 1;
+        result[curve] = intervals;
+      }
+    }
+  }
+  return result;
+}
+
+std::vector<Entity> CurveAdjuster::adjust(const std::vector<Entity>& stage,
+                                          const MeshAgain& mesh_again) const {
+  const std::set<Entity> stage_set(stage.begin(), stage.end());
+  std::map<Entity, CurveIntervals> intervals = intervals_now(stage_set);
+  std::set<Entity> meshed_again;
+  // Each round ends with all numbers as wanted, or with a curve known not to follow.
+  while (true) {
+    const std::map<Entity, int> wanted = match_intervals(sides_, intervals);
+    std::map<Entity, FactorSearch> searches;
+    std::map<Entity, SizeAnswers::Scale> scales;
+    for (const auto& [curve, count] : wanted) {
+      const int present = interval_count(curve);
+      if (stage_set.count(curve) > 0 && present > 0 && present != count) {
+        searches.emplace(curve, FactorSearch(count, present));
+        scales[curve].mesh =
+            read_entity_mesh(curve, NodeCoordinates(topology_.closure({curve}))).segments;
+      }
+    }
+    for (int round = 0; round < most_rounds && !searches.empty(); ++round) {
+      std::vector<Entity> curves;
+      std::map<Entity, SizeAnswers::Scale> present;
+      for (const auto& [curve, search] : searches) {
+        curves.push_back(curve);
+        present[curve] = scales[curve];
+        present[curve].factor = search.factor();
+        // In Gmsh 4.8 the ends alone tell the size there.
+        for (const Entity& end : topology_.lower(curve)) {
+          SizeAnswers::Scale& at_end = present.insert({end, {search.factor(), {}}}).first->second;
+          at_end.factor = std::min(at_end.factor, search.factor());
+          at_end.mesh.insert(at_end.mesh.end(), scales[curve].mesh.begin(),
+                             scales[curve].mesh.end());
+        }
+      }
+      mesh_again(curves, std::move(present));
+      meshed_again.insert(curves.begin(), curves.end());
+      for (auto entry = searches.begin(); entry != searches.end();) {
+        const int count = interval_count(entry->first);
+        if (count == entry->second.wanted()) {
+          entry = searches.erase(entry);
+        } else {
+          entry->second.next(count);
+          ++entry;
+        }
+      }
+    }
+    if (searches.empty()) {
+      return {meshed_again.begin(), meshed_again.end()};
+    }
+    for (const auto& [curve, search] : searches) {
+      // Sizes do not rule this curve, or rule it in steps of two.
+      CurveIntervals& known = intervals[curve];
+      if (search.follows() && !known.even) {
+        known.even = true;
+      } else {
+        known.fixed = true;
+        known.count = interval_count(curve);
+      }
+    }
+  }
+}
+
+}  // namespace meshgrow

@@ -1,0 +1,104 @@
+#include "size_answers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace meshgrow {
+
+namespace {
+
+bool is_size(double value) { return value > 0.0 && value < SizeField::no_size; }
+
+/// Length of the segment whose middle is nearest.
+double length_at(const std::vector<std::array<Vec3, 2>>& mesh, const Vec3& p) {
+  double nearest = SizeField::no_size;
+  double length = SizeField::no_size;
+  for (const auto& [a, b] : mesh) {
+    const double distance = (0.5 * (a + b) - p).squaredNorm();
+    if (distance < nearest) {
+      nearest = distance;
+      length = (b - a).norm();
+    }
+  }
+  return length;
+}
+
+}  // namespace
+
+void SizeAnswers::set_scales(std::map<Entity, Scale> scales, const Range& range, double unit) {
+  scales_ = std::move(scales);
+  range_ = range;
+  unit_ = unit;
+}
+
+void SizeAnswers::set_reader(std::function<void(int dim)> reader,
+                             std::function<bool(const Entity& curve)> has_mesh) {
+  reader_ = std::move(reader);
+  has_mesh_ = std::move(has_mesh);
+  highest_dim_ = 0;
+}
+
+void SizeAnswers::follow_run(const Entity& entity) const {
+  if (entity.dim == highest_dim_ || entity.dim == 0) {
+    return;
+  }
+  // Gmsh asks for curves while it meshes surfaces, too: those have a mesh by then.
+  const std::unique_lock<std::shared_mutex> lock(mutex_);
+  if (entity.dim > highest_dim_) {
+    reader_(entity.dim);
+    highest_dim_ = entity.dim;
+  } else if (entity.dim == 1 && highest_dim_ > 1 && !has_mesh_(entity)) {
+    highest_dim_ = 1;
+  }
+}
+
+double SizeAnswers::combined(const Entity& entity, double x, double y, double z,
+                             double proposed) const {
+  double result = proposed;
+  const double size =
+      field_.size(entity, Vec3(x, y, z)) * calibration_[static_cast<std::size_t>(entity.dim)];
+  if (is_size(size) && size < result) {
+    result = size;
+  }
+  if (user_sizes_) {
+    const double users = user_sizes_(entity.dim, entity.tag, x, y, z, result);
+    if (is_size(users) && users < result) {
+      result = users;
+    }
+  }
+  return result;
+}
+
+double SizeAnswers::scaled(const Scale& scale, const Entity& entity, double x, double y, double z,
+                           double proposed) const {
+  const double wanted = combined(entity, x, y, z, SizeField::no_size);
+  const double size = is_size(wanted) ? range_.factor * std::clamp(wanted, range_.min, range_.max)
+                                      : length_at(scale.mesh, Vec3(x, y, z));
+  return is_size(size) ? scale.factor * size / unit_ : proposed;
+}
+
+double SizeAnswers::answer(int dim, int tag, double x, double y, double z,
+                           double proposed) const noexcept {
+  if (dim < 0 || dim > 3) {
+    return proposed;
+  }
+  try {
+    const Entity entity{dim, tag};
+    if (!scales_.empty()) {
+      const auto scale = scales_.find(entity);
+      return scale == scales_.end() ? combined(entity, x, y, z, proposed)
+                                    : scaled(scale->second, entity, x, y, z, proposed);
+    }
+    if (!reader_) {
+      return combined(entity, x, y, z, proposed);
+    }
+    follow_run(entity);
+    const std::shared_lock<std::shared_mutex> lock(mutex_);
+    return combined(entity, x, y, z, proposed);
+  } catch (...) {
+    return proposed;
+  }
+}
+
+}  // namespace meshgrow
