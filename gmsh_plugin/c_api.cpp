@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -376,8 +378,13 @@ char* meshgrow_report_json(int dim, const int* entities, size_t entities_n, mesh
     meshgrow::SizeAsked size_asked;
     if (field != nullptr) {
       deref(field).refresh_if_needed();
-      size_asked = [field](const Entity& entity, const meshgrow::Vec3& p) {
-        return field->model_field.field().size(entity, p);
+      // As Gmsh changes every size that it is told.
+      const double smallest = meshgrow::gmsh::option("Mesh.MeshSizeMin");
+      const double largest = std::max(smallest, meshgrow::gmsh::option("Mesh.MeshSizeMax"));
+      const double factor = meshgrow::gmsh::option("Mesh.MeshSizeFactor");
+      size_asked = [=](const Entity& entity, const meshgrow::Vec3& p) {
+        const double size = field->model_field.field().size(entity, p);
+        return std::isfinite(size) ? factor * std::clamp(size, smallest, largest) : size;
       };
     }
     return copy_text(to_json(meshgrow::make_report(mesh, size_asked)).dump());

@@ -100,7 +100,8 @@ MESHGROW_API int meshgrow_field_combine(meshgrow_field* field,
                                         void* data);
 
 /* Sizes asked for on an entity at `points_n` points (three doubles each) into `sizes`; infinite
- * where no function acts. From the grid, or exact without it. The first call reads the sources. */
+ * where no function acts; before Gmsh applies its Mesh.MeshSizeMin, Max and Factor. From the grid,
+ * or exact without it. The first call reads the sources. */
 MESHGROW_API int meshgrow_field_size(meshgrow_field* field, int dim, int tag, const double* points,
                                      size_t points_n, double* sizes);
 MESHGROW_API int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag,

@@ -68,35 +68,47 @@ std::size_t ModelField::add(const std::string& text) {
   return add(parse_size_function(text, field_.topology()));
 }
 
-void ModelField::read_sources(const std::vector<std::size_t>& functions) {
-  if (!functions.empty()) {
-    read_sources(functions, NodeCoordinates());
+std::vector<FacetedSource> ModelField::read_meshed(std::size_t function,
+                                                   const NodeCoordinates& nodes) const {
+  std::vector<FacetedSource> result;
+  for (const Entity& source : field_.functions()[function].sources) {
+    if ((source.dim == 1 || source.dim == 2) && gmsh::has_elements(source)) {
+      result.push_back(read_entity_mesh(source, nodes));
+    }
+  }
+  return result;
+}
+
+void ModelField::set_sources(std::size_t function, const std::vector<FacetedSource>& sources) {
+  const DroppedFacets dropped = field_.set_sources(function, sources, size_factor_);
+  if (dropped.zero_size + dropped.not_finite > 0) {
+    gmsh::log(field_.function_name(function) + ": " +
+                  grouped_digits(dropped.zero_size + dropped.not_finite) +
+                  " elements of its sources have no size or no finite coordinates and are left "
+                  "out: check the mesh of " +
+                  entity_names(field_.functions()[function].sources) + ".",
+              "warning");
   }
 }
 
-void ModelField::read_sources(const std::vector<std::size_t>& functions,
-                              const NodeCoordinates& nodes) {
+void ModelField::read_sources(const std::vector<std::size_t>& functions) {
+  if (functions.empty()) {
+    return;
+  }
   size_factor_ = gmsh::option("Mesh.MeshSizeFactor");
+  const NodeCoordinates nodes;
   for (const std::size_t index : functions) {
     const SizeFunction& function = field_.functions()[index];
-    std::vector<FacetedSource> sources;
-    for (const Entity& source : function.sources) {
-      const bool meshed = (source.dim == 1 || source.dim == 2) && gmsh::has_elements(source);
-      if (meshed) {
-        sources.push_back(read_entity_mesh(source, nodes));
-      } else if (function.kind == Kind::fixed) {
-        sources.push_back(sample_geometry(source, field_.topology(), function.start_size));
+    std::vector<FacetedSource> sources = read_meshed(index, nodes);
+    if (function.kind == Kind::fixed) {
+      for (const Entity& source : function.sources) {
+        if (std::none_of(sources.begin(), sources.end(),
+                         [&source](const FacetedSource& read) { return read.entity == source; })) {
+          sources.push_back(sample_geometry(source, field_.topology(), function.start_size));
+        }
       }
     }
-    const DroppedFacets dropped = field_.set_sources(index, sources, size_factor_);
-    if (dropped.zero_size + dropped.not_finite > 0) {
-      gmsh::log(field_.function_name(index) + ": " +
-                    grouped_digits(dropped.zero_size + dropped.not_finite) +
-                    " elements of its sources have no size or no finite coordinates and are left "
-                    "out: check the mesh of " +
-                    entity_names(function.sources) + ".",
-                "warning");
-    }
+    set_sources(index, sources);
   }
 }
 
@@ -156,7 +168,7 @@ void ModelField::read_all(bool wait_for_meshes) {
     const std::vector<Entity> unmeshed = unmeshed_sources(function);
     if (wait_for_meshes && !strict_ && !unmeshed.empty() &&
         highest(unmeshed) < highest(field_.functions()[function].attachments)) {
-      late_.insert(function);
+      late_[function] = read_meshed(function, NodeCoordinates());
     } else {
       report_unmeshed(function);
     }
@@ -190,15 +202,22 @@ void ModelField::unregister_callback() {
 }
 
 void ModelField::read_late_sources(int dim) {
-  for (const std::size_t function : late_) {
-    const std::vector<Entity>& sources = field_.functions()[function].sources;
-    // A source of this dimension may be half meshed now.
-    if (std::any_of(sources.begin(), sources.end(),
-                    [dim](const Entity& source) { return source.dim >= dim; })) {
-      continue;
+  for (const auto& [function, meshed_before] : late_) {
+    std::vector<FacetedSource> sources = meshed_before;
+    for (const Entity& source : field_.functions()[function].sources) {
+      const bool known =
+          std::any_of(meshed_before.begin(), meshed_before.end(),
+                      [&source](const FacetedSource& before) { return before.entity == source; });
+      // One of this dimension may be half meshed now.
+      if (!known && source.dim < dim && gmsh::has_elements(source)) {
+        sources.push_back(
+            read_entity_mesh(source, NodeCoordinates(field_.topology().closure({source}))));
+      }
     }
-    read_sources({function}, NodeCoordinates(field_.topology().closure(sources)));
-    report_unmeshed(function);
+    set_sources(function, sources);
+    if (dim > highest(field_.functions()[function].sources)) {
+      report_unmeshed(function);
+    }
   }
   field_.build_trees();
 }

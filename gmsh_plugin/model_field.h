@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -86,9 +87,11 @@ class ModelField {
 
   /// Gives these functions their sources as they are in the model now.
   void read_sources(const std::vector<std::size_t>& functions);
-  void read_sources(const std::vector<std::size_t>& functions, const NodeCoordinates& nodes);
+  std::vector<FacetedSource> read_meshed(std::size_t function, const NodeCoordinates& nodes) const;
+  void set_sources(std::size_t function, const std::vector<FacetedSource>& sources);
 
-  /// Within a run of Gmsh: reads the functions that waited for a mesh of a lower dimension.
+  /// Within a run of Gmsh that has come to this dimension: reads the late sources of lower ones and
+  /// forgets those of earlier runs.
   void read_late_sources(int dim);
 
   /// `refresh`; `wait_for_meshes`: sources without a mesh that a run of Gmsh will mesh in time are
@@ -108,8 +111,9 @@ class ModelField {
   SizeAnswers answers_;
   bool strict_ = false;
   bool calibrate_ = false;
-  double size_factor_ = 1.0;    ///< Mesh.MeshSizeFactor when sources were read
-  std::set<std::size_t> late_;  ///< functions with sources to be read within a run of Gmsh
+  double size_factor_ = 1.0;  ///< Mesh.MeshSizeFactor when sources were read
+  /// Functions with sources to be read within a run of Gmsh, and those that had a mesh before.
+  std::map<std::size_t, std::vector<FacetedSource>> late_;
   bool sources_read_ = false;
   bool generating_ = false;
   std::set<std::size_t> reported_;

@@ -49,6 +49,7 @@ void SizeAnswers::follow_run(const Entity& entity) const {
     reader_(entity.dim);
     highest_dim_ = entity.dim;
   } else if (entity.dim == 1 && highest_dim_ > 1 && !has_mesh_(entity)) {
+    reader_(1);
     highest_dim_ = 1;
   }
 }

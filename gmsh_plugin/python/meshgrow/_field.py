@@ -160,7 +160,10 @@ class SizeField:
         self._check(lib.meshgrow_field_refresh(self._handle))
 
     def size(self, dim, tag, points):
-        """Sizes asked for on an entity at points (n, 3) -> (n,) float64; inf where none acts."""
+        """Sizes asked for on an entity at points (n, 3) -> (n,) float64; inf where none acts.
+
+        Before Gmsh applies Mesh.MeshSizeMin, Max and Factor to them.
+        """
         return self._sizes(lib.meshgrow_field_size, dim, tag, points)
 
     def exact_size(self, dim, tag, points):
