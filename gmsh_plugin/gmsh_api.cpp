@@ -1,9 +1,11 @@
 #include "gmsh_api.h"
 
 #include <cstdio>
+#include <fstream>
 #include <utility>
 
 #include "gmsh_library.h"
+#include "temporary_directory.h"
 
 namespace meshgrow::gmsh {
 
@@ -225,6 +227,10 @@ std::string entity_type(const Entity& entity) {
   return take_string(type);
 }
 
+bool is_discrete(const Entity& entity) {
+  return entity_type(entity).find("Discrete") != std::string::npos;
+}
+
 Entity add_discrete_point() {
   const int* no_boundary = nullptr;
   return {0, library().call_int("gmshModelAddDiscreteEntity", 0, -1, no_boundary, std::size_t{0})};
@@ -333,7 +339,61 @@ void clear_mesh(const std::vector<Entity>& entities) {
   library().call("gmshModelMeshClear", dim_tags.data(), dim_tags.size());
 }
 
-void generate(int dim) { library().call("gmshModelMeshGenerate", dim); }
+PeriodicNodes periodic_nodes(const Entity& entity) {
+  PeriodicNodes result;
+  GmshArray<std::size_t> nodes;
+  GmshArray<std::size_t> master_nodes;
+  GmshArray<double> transformation;
+  library().call("gmshModelMeshGetPeriodicNodes", entity.dim, entity.tag, &result.master,
+                 nodes.data(), nodes.size(), master_nodes.data(), master_nodes.size(),
+                 transformation.data(), transformation.size(), 0);
+  result.nodes = nodes.copy();
+  result.master_nodes = master_nodes.copy();
+  result.transformation = transformation.copy();
+  return result;
+}
+
+void set_periodic_nodes(const std::vector<std::pair<Entity, PeriodicNodes>>& periodic) {
+  // The only way in is a file, and only one without transformations moves no nodes.
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "periodic.msh").string();
+  {
+    std::ofstream file(path);
+    file << "$MeshFormat\n4.1 0 " << sizeof(std::size_t) << "\n$EndMeshFormat\n$Periodic\n"
+         << periodic.size() << '\n';
+    for (const auto& [entity, pairs] : periodic) {
+      file << entity.dim << ' ' << entity.tag << ' ' << pairs.master << "\n0\n"
+           << pairs.nodes.size() << '\n';
+      for (std::size_t i = 0; i < pairs.nodes.size(); ++i) {
+        file << pairs.nodes[i] << ' ' << pairs.master_nodes[i] << '\n';
+      }
+    }
+    file << "$EndPeriodic\n";
+  }
+  library().call("gmshMerge", path.c_str());
+}
+
+void generate(int dim) {
+  // Where an error is thrown (2, the default), Gmsh stays locked and meshes nothing more in the
+  // session, and 4.8 throws it out of parallel loops, which ends the process. With 1 it stops
+  // meshing and returns.
+  constexpr const char* abort_on_error = "General.AbortOnError";
+  const double users = option(abort_on_error);
+  if (users > 1.0) {
+    set_option(abort_on_error, 1.0);
+  }
+  try {
+    library().call("gmshModelMeshGenerate", dim);
+  } catch (...) {
+    set_option(abort_on_error, users);
+    throw;
+  }
+  set_option(abort_on_error, users);
+  const std::string error = last_error();
+  if (users > 0.0 && !error.empty()) {
+    throw Error("Gmsh: " + error);
+  }
+}
 
 void set_order(int order) { library().call("gmshModelMeshSetOrder", order); }
 
@@ -367,6 +427,21 @@ std::vector<Vec3> points_at(const Entity& entity, const std::vector<double>& par
     result.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
   }
   return result;
+}
+
+std::vector<double> parameters_at(const Entity& entity, const std::vector<double>& coordinates) {
+  GmshArray<double> parameters;
+  library().call("gmshModelGetParametrization", entity.dim, entity.tag, coordinates.data(),
+                 coordinates.size(), parameters.data(), parameters.size());
+  return parameters.copy();
+}
+
+Vec3 normal_at(const Entity& surface, const std::vector<double>& parameters) {
+  GmshArray<double> normals;
+  library().call("gmshModelGetNormal", surface.tag, parameters.data(), parameters.size(),
+                 normals.data(), normals.size());
+  const std::vector<double> normal = normals.copy();
+  return normal.size() < 3 ? Vec3::Zero() : Vec3(normal[0], normal[1], normal[2]);
 }
 
 bool is_inside(const Entity& surface, double u, double v) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "entity.h"
@@ -49,6 +50,11 @@ Box bounding_box(const Entity& entity);
 
 /// Such as "Plane", "Discrete surface".
 std::string entity_type(const Entity& entity);
+/// Whether the entity is a mesh without geometry of a CAD kernel.
+bool is_discrete(const Entity& entity);
+/// What Gmsh makes of a compound (several entities that it meshes as one) while it meshes them: a
+/// discrete entity whose tag is this much above that of the first part.
+constexpr int compound_offset = 100000;
 /// A point without geometry, with a tag of its own.
 Entity add_discrete_point();
 void remove_entity(const Entity& entity);
@@ -83,6 +89,8 @@ std::vector<Elements> elements(const Entity& entity);
 bool has_elements(const Entity& entity);
 void add_elements(const Entity& entity, const std::vector<Elements>& elements);
 
+constexpr int tetrahedron_type = 4;
+
 struct ElementType {
   std::string name;  ///< such as "Triangle 6"
   int dim = 0;
@@ -93,8 +101,20 @@ ElementType element_type(int type);
 /// The type of first order with the same corners.
 int linear_type(const ElementType& type);
 
+/// Corner nodes of a periodic curve or surface and those of the entity that it is a copy of.
+struct PeriodicNodes {
+  int master = 0;  ///< tag of the other entity, of the same dimension; its own if it is no copy
+  std::vector<std::size_t> nodes;
+  std::vector<std::size_t> master_nodes;
+  std::vector<double> transformation;  ///< affine, from the master: 4 × 4 by rows, or none
+};
+PeriodicNodes periodic_nodes(const Entity& entity);
+/// Tells Gmsh which nodes correspond, without moving any. The nodes must exist.
+void set_periodic_nodes(const std::vector<std::pair<Entity, PeriodicNodes>>& periodic);
+
 /// Deletes the meshes of these entities.
 void clear_mesh(const std::vector<Entity>& entities);
+/// Throws Error if Gmsh logged an error meanwhile, unless the user's General.AbortOnError is 0.
 void generate(int dim);
 /// Makes all elements of this order.
 void set_order(int order);
@@ -104,6 +124,10 @@ std::string last_error();
 std::vector<std::array<double, 2>> parameter_bounds(const Entity& entity);
 /// Points at parameters: none for a point, one a curve point, two a surface point.
 std::vector<Vec3> points_at(const Entity& entity, const std::vector<double>& parameters);
+/// Parameters of points (three coordinates each) on a curve (one each) or surface (two each).
+std::vector<double> parameters_at(const Entity& entity, const std::vector<double>& coordinates);
+/// Unit normal of a surface at two parameters.
+Vec3 normal_at(const Entity& surface, const std::vector<double>& parameters);
 /// Whether the surface's trimming curves enclose the parameters (u, v).
 bool is_inside(const Entity& surface, double u, double v);
 

@@ -59,9 +59,9 @@ double GmshState::user_option(const std::string& name) const {
 }
 
 void GmshState::show_only(const std::vector<Entity>& shown, const std::vector<Entity>& all) {
-  if (visibility_.empty()) {
-    for (const Entity& entity : all) {
-      visibility_.emplace_back(entity, gmsh::visible(entity));
+  for (const Entity& entity : all) {
+    if (visibility_.count(entity) == 0) {
+      visibility_[entity] = gmsh::visible(entity);
     }
   }
   gmsh::set_visible(all, false);

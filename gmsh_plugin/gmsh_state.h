@@ -3,7 +3,6 @@
 
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "entity.h"
@@ -41,7 +40,7 @@ class GmshState {
 
  private:
   std::map<std::string, double> options_;
-  std::vector<std::pair<Entity, bool>> visibility_;
+  std::map<Entity, bool> visibility_;
 };
 
 }  // namespace meshgrow

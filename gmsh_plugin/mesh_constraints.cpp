@@ -1,46 +1,16 @@
 #include "mesh_constraints.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "error.h"
 #include "gmsh_api.h"
 #include "gmsh_state.h"
+#include "temporary_directory.h"
 
 namespace meshgrow {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A new directory, gone with all that is in it at the end.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::error_code failed;
-    std::string name = (fs::temp_directory_path(failed) / "meshgrow-XXXXXX").string();
-    if (failed || ::mkdtemp(name.data()) == nullptr) {
-      throw Error(
-          "No temporary file can be written, which is needed to read transfinite constraints: set "
-          "TMPDIR to a writable directory.");
-    }
-    path_ = name;
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// A point that is no OpenCASCADE one, for the life of this object. Without one, newer versions of
 /// Gmsh write the OpenCASCADE geometry alone and no constraints.

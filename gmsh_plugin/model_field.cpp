@@ -144,6 +144,13 @@ void ModelField::report_unmeshed(std::size_t function) {
 
 void ModelField::check_model() const {
   std::vector<Entity> now = gmsh::entities();
+  now.erase(std::remove_if(now.begin(), now.end(),
+                           [this](const Entity& entity) {
+                             return !field_.topology().contains(entity) &&
+                                    field_.topology().contains(
+                                        {entity.dim, entity.tag - gmsh::compound_offset});
+                           }),
+            now.end());
   std::sort(now.begin(), now.end());
   if (now != field_.topology().entities()) {
     throw Error(

@@ -54,7 +54,12 @@ Topology read_topology() {
   if (entities.empty()) {
     throw Error("The current Gmsh model has no entities: open or build a model first.");
   }
+  const std::set<Entity> all(entities.begin(), entities.end());
   for (const Entity& entity : entities) {
+    if (all.count({entity.dim, entity.tag - gmsh::compound_offset}) > 0 &&
+        gmsh::is_discrete(entity) && !gmsh::has_elements(entity)) {
+      continue;  // left over from a compound, whose parts have the mesh
+    }
     std::vector<Entity> lower = entity.dim > 0 ? gmsh::boundary(entity) : std::vector<Entity>();
     if (entity.dim >= 2) {
       const std::vector<Entity> inside = gmsh::embedded(entity);

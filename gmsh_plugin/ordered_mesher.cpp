@@ -6,7 +6,9 @@
 
 #include "error.h"
 #include "gmsh_api.h"
+#include "mapped_surface.h"
 #include "meshing_plan.h"
+#include "periodic_copies.h"
 
 namespace meshgrow {
 
@@ -23,6 +25,29 @@ std::set<Entity> structured_faces(const Topology& topology, const MeshConstraint
   return result;
 }
 
+/// Periodic entities and their masters. Mapped surfaces are not among them: Gmsh meshes those from
+/// their curves, whatever they are copies of.
+std::map<Entity, Entity> copied_by_us(const Topology& topology,
+                                      const MeshConstraints& constraints) {
+  std::map<Entity, Entity> masters = periodic_masters(topology);
+  for (const MappedSurface& mapped : constraints.mapped_surfaces) {
+    masters.erase(mapped.surface);
+  }
+  return masters;
+}
+
+MeshingTask task_of(const SizeField& field, std::set<Entity> meshed, const CurveAdjuster& adjuster,
+                    const std::map<Entity, Entity>& masters, std::set<Entity> companions) {
+  for (const auto& [copy, master] : masters) {
+    if (meshed.count(copy) > 0 && meshed.count(master) == 0) {
+      throw Error(entity_name(copy) + " has a mesh, but it is a periodic copy of " +
+                  entity_name(master) + ", which has none: mesh both beforehand, or neither.");
+    }
+  }
+  return {field.topology(), field.functions(),    std::move(meshed), adjuster.connected_curves(),
+          masters,          std::move(companions)};
+}
+
 }  // namespace
 
 OrderedMesher::OrderedMesher(ModelField& model_field)
@@ -32,7 +57,8 @@ OrderedMesher::OrderedMesher(ModelField& model_field)
       premeshed_(field_.topology()),
       constraints_(read_mesh_constraints(field_.topology())),
       structured_faces_(structured_faces(field_.topology(), constraints_)),
-      adjuster_(field_.topology(), constraints_) {}
+      adjuster_(field_.topology(), constraints_),
+      masters_(copied_by_us(field_.topology(), constraints_)) {}
 
 void OrderedMesher::check_options() const {
   if (gmsh::option("Mesh.SubdivisionAlgorithm") != 0.0) {
@@ -58,7 +84,13 @@ std::vector<MeshingPass> OrderedMesher::plan(const SizeField& field, int dim) {
   }
   const MeshConstraints constraints = read_mesh_constraints(field.topology());
   const CurveAdjuster adjuster(field.topology(), constraints);
-  return plan_meshing({field.topology(), field.functions(), meshed, adjuster.connected_curves()},
+  return plan_meshing(
+      task_of(field, std::move(meshed), adjuster, copied_by_us(field.topology(), constraints), {}),
+      dim);
+}
+
+std::vector<MeshingPass> OrderedMesher::plan(int dim) const {
+  return plan_meshing(task_of(field_, premeshed_.entities(), adjuster_, masters_, companions_),
                       dim);
 }
 
@@ -72,7 +104,7 @@ void OrderedMesher::clear_all_but_sources(const SizeField& field) {
   }
   for (const Entity& entity : all) {
     // Without its mesh a discrete entity would be nothing.
-    if (gmsh::entity_type(entity).find("Discrete") != std::string::npos) {
+    if (gmsh::is_discrete(entity)) {
       sources.push_back(entity);
     }
   }
@@ -86,32 +118,62 @@ void OrderedMesher::clear_all_but_sources(const SizeField& field) {
 
 void OrderedMesher::generate(int dim) {
   check_options();
-  const std::vector<MeshingPass> plan = plan_meshing(
-      {field_.topology(), field_.functions(), premeshed_.entities(), adjuster_.connected_curves()},
-      dim);
+  std::vector<MeshingPass> passes = plan(dim);
   state_.set_option("Mesh.MeshOnlyVisible", 1.0);
   state_.set_option("Mesh.MeshOnlyEmpty", 0.0);
   state_.set_option("Mesh.Renumber", 0.0);
   state_.set_option("Mesh.ElementOrder", 1.0);
-  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
-    stale_.insert(i);
-  }
-  model_field_.reported_.clear();
+  const std::set<Entity> premeshed = premeshed_.entities();
   const SizeCallback callback(model_field_.answers_, model_field_.model());
   try {
-    run(plan);
+    while (true) {
+      try {
+        run(passes);
+        break;
+      } catch (const LeftEmpty& left) {
+        start_again(left, premeshed);
+        passes = plan(dim);
+      }
+    }
     premeshed_.put_back_changed();
     read_new_sources();
   } catch (...) {
     model_field_.answers_.clear_scales();
     premeshed_.put_back_missing();
-    premeshed_.put_back_changed();
+    premeshed_.put_back_after_error();
     throw;
   }
 }
 
+void OrderedMesher::start_again(const LeftEmpty& left, const std::set<Entity>& premeshed) {
+  // Gmsh makes extruded layers and other copies only in the pass that meshes what they come from,
+  // and tells nobody what that is. So these go along with every pass from the first possible on.
+  bool any_new = false;
+  for (const Entity& entity : left.entities) {
+    any_new = companions_.insert(entity).second || any_new;
+  }
+  if (!any_new) {
+    refuse_empty(left);
+  }
+  model_field_.tell("Starting again: Gmsh meshes " + entity_names(left.entities) +
+                    " only along with what it is a copy of");
+  for (auto entity = all_.rbegin(); entity != all_.rend(); ++entity) {
+    if (entity->dim > 0 && premeshed.count(*entity) == 0 && gmsh::has_elements(*entity)) {
+      gmsh::clear_mesh({*entity});
+    }
+  }
+  premeshed_.keep_only(premeshed);
+  waiting_.clear();
+  lost_faces_.clear();
+}
+
 void OrderedMesher::run(const std::vector<MeshingPass>& plan) {
   planned_count_ = plan.size();
+  pass_count_ = 0;
+  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
+    stale_.insert(i);
+  }
+  model_field_.reported_.clear();
   std::vector<Entity> stage;
   for (auto pass = plan.begin(); pass != plan.end(); ++pass) {
     const auto next = pass + 1;
@@ -119,15 +181,24 @@ void OrderedMesher::run(const std::vector<MeshingPass>& plan) {
         std::any_of(next, plan.end(), [](const MeshingPass& later) { return later.dim == 1; });
     run_pass(*pass, curves_follow);
     if (pass->dim == 1) {
-      stage.insert(stage.end(), pass->entities.begin(), pass->entities.end());
+      std::copy_if(pass->entities.begin(), pass->entities.end(), std::back_inserter(stage),
+                   [this](const Entity& curve) { return masters_.count(curve) == 0; });
     }
     if (!stage.empty() && (next == plan.end() || next->stage != pass->stage)) {
       adjust_curves(stage);
+      // Gmsh reverses curves that the user wants reversed again in every pass.
+      premeshed_.keep(stage);
       stage.clear();
     }
     if (!curves_follow) {
       mesh_lost_faces();
     }
+  }
+  LeftEmpty left{{}, "any pass"};
+  std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(left.entities),
+               [](const Entity& entity) { return entity.dim == 2; });
+  if (!left.entities.empty()) {
+    refuse_empty(left);
   }
 }
 
@@ -135,14 +206,15 @@ void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
   read_new_sources();
   report_unmeshed_sources(pass.entities);
   // A source may turn out to have no elements, and then its function does not act after all.
+  const std::vector<Entity> open = without_copies(pass.entities);
   std::vector<Entity> attached;
   std::vector<Entity> others;
-  std::partition_copy(pass.entities.begin(), pass.entities.end(), std::back_inserter(attached),
+  std::partition_copy(open.begin(), open.end(), std::back_inserter(attached),
                       std::back_inserter(others),
                       [&](const Entity& e) { return pass.attached && acts_effectively(e); });
   ++pass_count_;
   for (const bool is_attached : {true, false}) {
-    const std::vector<Entity>& entities = is_attached ? attached : others;
+    std::vector<Entity> entities = is_attached ? attached : others;
     if (entities.empty()) {
       continue;
     }
@@ -153,13 +225,59 @@ void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
                              std::to_string(planned_count_) + " (" + entity_names(entities, 3) +
                              (is_attached ? "; sizes from the field)" : "; Gmsh's own sizes)");
     model_field_.tell("Meshing, " + name);
+    std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(entities),
+                 [&pass](const Entity& entity) { return entity.dim == pass.dim; });
     mesh(entities, is_attached, name);
-    check_result(entities, name);
+    const std::vector<Entity> meshed = take_meshed(entities, name);
     if (pass.dim == 2 && curves_follow) {
-      keep_from_curve_passes(entities);
+      keep_from_curve_passes(meshed);
     }
-    mark_stale(entities);
+    mark_stale(meshed);
   }
+}
+
+std::vector<Entity> OrderedMesher::without_copies(const std::vector<Entity>& entities) {
+  std::vector<Entity> others;
+  std::vector<Entity> copies;
+  for (const Entity& entity : entities) {
+    const auto master = masters_.find(entity);
+    if (master == masters_.end() || !gmsh::has_elements(master->second)) {
+      others.push_back(entity);
+      continue;
+    }
+    copy_from_master(entity, master->second, field_.topology());
+    copies.push_back(entity);
+  }
+  if (!copies.empty()) {
+    model_field_.tell("Copied the meshes of their masters to " + entity_names(copies));
+    premeshed_.keep(copies);
+    mark_stale(copies);
+  }
+  return others;
+}
+
+std::vector<Entity> OrderedMesher::take_meshed(const std::vector<Entity>& entities,
+                                               const std::string& pass_name) {
+  LeftEmpty left;
+  std::vector<Entity> meshed;
+  for (const Entity& entity : entities) {
+    if (gmsh::has_elements(entity)) {
+      meshed.push_back(entity);
+      waiting_.erase(entity);
+    } else if (companions_.count(entity) > 0) {
+      waiting_.insert(entity);
+    } else if (entity.dim > 1 || !has_no_length(entity, field_.topology())) {
+      left.entities.push_back(entity);
+    }
+  }
+  if (!left.entities.empty()) {
+    left.pass_name = pass_name;
+    if (entities.front().dim == 3 || !gmsh::last_error().empty()) {
+      refuse_empty(left);
+    }
+    throw left;
+  }
+  return meshed;
 }
 
 void OrderedMesher::keep_from_curve_passes(const std::vector<Entity>& surfaces) {
@@ -181,17 +299,49 @@ void OrderedMesher::mesh_lost_faces() {
   }
 }
 
+void OrderedMesher::protect_discrete_faces(const std::vector<Entity>& volumes) const {
+  for (const Entity& entity : field_.topology().closure(volumes)) {
+    if (entity.dim == 2 && gmsh::has_elements(entity) && gmsh::is_discrete(entity)) {
+      // Gmsh counts no discrete surfaces when it asks whether surfaces are meshed, and then meshes
+      // those with a parametrisation again. A single element, which it removes, says that
+      // the model is meshed up to volumes.
+      const std::vector<std::size_t> nodes = gmsh::all_nodes().tags;
+      if (nodes.size() >= 4 && !gmsh::has_elements(volumes.front())) {
+        gmsh::add_elements(volumes.front(),
+                           {{gmsh::tetrahedron_type, {}, {nodes.begin(), nodes.begin() + 4}}});
+      }
+      return;
+    }
+  }
+}
+
+void OrderedMesher::remove_protection(const std::vector<Entity>& entities) const {
+  if (entities.front().dim == 3) {
+    const std::vector<gmsh::Elements> elements = gmsh::elements(entities.front());
+    if (elements.size() == 1 && elements.front().tags.size() == 1 &&
+        elements.front().type == gmsh::tetrahedron_type) {
+      gmsh::clear_mesh({entities.front()});
+    }
+  }
+}
+
 void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
                          const std::string& name) {
   constexpr const char* extend = "Mesh.MeshSizeExtendFromBoundary";
   state_.set_option(extend, attached ? 0.0 : state_.user_option(extend));
-  state_.show_only(entities, all_);
+  // With what Gmsh has made for compounds meanwhile.
+  state_.show_only(entities, gmsh::entities());
+  if (entities.front().dim == 3) {
+    protect_discrete_faces(entities);
+  }
   try {
     gmsh::generate(entities.front().dim);
   } catch (const Error& error) {
+    remove_protection(entities);
     check_faces_stayed(entities, name);
     throw Error("Meshing stopped in " + name + ": " + error.what());
   }
+  remove_protection(entities);
   check_faces_stayed(entities, name);
   premeshed_.put_back_missing();
 }
@@ -282,21 +432,12 @@ void OrderedMesher::check_faces_stayed(const std::vector<Entity>& entities,
   }
 }
 
-void OrderedMesher::check_result(const std::vector<Entity>& entities,
-                                 const std::string& pass_name) const {
-  std::vector<Entity> empty;
-  for (const Entity& entity : entities) {
-    // Curves of zero length (poles, tips) stay without elements rightly.
-    if (entity.dim > 1 && !gmsh::has_elements(entity)) {
-      empty.push_back(entity);
-    }
-  }
-  if (!empty.empty()) {
-    const std::string reason = gmsh::last_error();
-    throw Error("Gmsh could not mesh " + entity_names(empty) + " in " + pass_name +
-                (reason.empty() ? "" : " (" + reason + ")") +
-                ": repair the geometry or change sizes or algorithm; the rest is kept.");
-  }
+void OrderedMesher::refuse_empty(const LeftEmpty& left) const {
+  const std::string reason = gmsh::last_error();
+  throw Error("Gmsh could not mesh " + entity_names(left.entities) + " in " + left.pass_name +
+              (reason.empty() ? "" : " (" + reason + ")") +
+              ": repair the geometry, change sizes or algorithm, or, if it is extruded from "
+              "something meshed before, mesh it beforehand as well; the rest is kept.");
 }
 
 }  // namespace meshgrow

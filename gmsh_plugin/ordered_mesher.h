@@ -37,9 +37,21 @@ class OrderedMesher {
   static void clear_all_but_sources(const SizeField& field);
 
  private:
+  /// Entities without a mesh after a pass in which Gmsh told of no error.
+  struct LeftEmpty {
+    std::vector<Entity> entities;
+    std::string pass_name;
+  };
+  std::vector<MeshingPass> plan(int dim) const;
   void run(const std::vector<MeshingPass>& plan);
+  void start_again(const LeftEmpty& left, const std::set<Entity>& premeshed);
   void run_pass(const MeshingPass& pass, bool curves_follow);
+  std::vector<Entity> without_copies(const std::vector<Entity>& entities);
+  std::vector<Entity> take_meshed(const std::vector<Entity>& entities,
+                                  const std::string& pass_name);
   void mesh(const std::vector<Entity>& entities, bool attached, const std::string& name);
+  void protect_discrete_faces(const std::vector<Entity>& volumes) const;
+  void remove_protection(const std::vector<Entity>& entities) const;
   void adjust_curves(const std::vector<Entity>& stage);
   void keep_from_curve_passes(const std::vector<Entity>& surfaces);
   void mesh_lost_faces();
@@ -48,7 +60,7 @@ class OrderedMesher {
   bool acts_effectively(const Entity& entity) const;
   void check_options() const;
   void check_faces_stayed(const std::vector<Entity>& entities, const std::string& pass_name) const;
-  void check_result(const std::vector<Entity>& entities, const std::string& pass_name) const;
+  [[noreturn]] void refuse_empty(const LeftEmpty& left) const;
   void report_unmeshed_sources(const std::vector<Entity>& entities);
 
   ModelField& model_field_;
@@ -59,8 +71,11 @@ class OrderedMesher {
   MeshConstraints constraints_;
   std::set<Entity> structured_faces_;  ///< mapped faces of mapped volumes
   CurveAdjuster adjuster_;
-  std::vector<Entity> lost_faces_;  ///< structured ones that curve passes took the mesh from
-  std::set<std::size_t> stale_;     ///< functions with a source meshed since they were read
+  std::map<Entity, Entity> masters_;  ///< of periodic entities
+  std::set<Entity> companions_;       ///< found to be meshed by Gmsh only along with others
+  std::set<Entity> waiting_;          ///< companions that were due and have no mesh yet
+  std::vector<Entity> lost_faces_;    ///< structured ones that curve passes took the mesh from
+  std::set<std::size_t> stale_;       ///< functions with a source meshed since they were read
   int pass_count_ = 0;
   std::size_t planned_count_ = 0;
 };

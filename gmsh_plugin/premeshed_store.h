@@ -16,14 +16,26 @@ namespace meshgrow {
 /// order first order (DESIGN.md, section 5, lines 1 and 3).
 ///
 /// Kept are, for each entity: node tags, coordinates to the bit, connectivity and order of
-/// elements. Element tags are not.
+/// elements, and which nodes of periodic entities correspond. Element tags are not.
 class PremeshedStore {
  public:
+  struct Mesh {
+    gmsh::Nodes nodes;
+    std::vector<gmsh::Elements> elements;
+    gmsh::PeriodicNodes periodic;
+  };
+  static Mesh read(const Entity& entity);
+  /// The same with corner nodes only.
+  static Mesh first_order(const Mesh& mesh);
+
   /// Copies the meshes of all entities of the model that have elements.
   explicit PremeshedStore(const Topology& topology);
 
   /// Copies the meshes of these entities as well.
   void keep(const std::vector<Entity>& entities);
+
+  /// Forgets the copies of entities that are not among these.
+  void keep_only(const std::set<Entity>& entities);
 
   std::set<Entity> entities() const;
   bool contains(const Entity& entity) const { return meshes_.count(entity) > 0; }
@@ -36,21 +48,30 @@ class PremeshedStore {
   std::optional<Entity> any_of_higher_order() const;
 
   /// Puts back every stored mesh that differs in any way; meshes on top of it are taken off and
-  /// laid on again. Throws Error, naming the entities, if one still differs afterwards.
+  /// laid on again. Throws Error, naming the entities, if one still differs afterwards, or if Gmsh
+  /// had given it other elements: what was meshed on those does not fit it and is deleted.
   void put_back_changed() const;
+
+  /// The same where an error is passing already: what does not fit is deleted without a word.
+  void put_back_after_error() const;
 
   /// Stored entities whose mesh is not as it was.
   std::vector<Entity> changed() const;
 
  private:
-  struct Mesh {
-    gmsh::Nodes nodes;
-    std::vector<gmsh::Elements> elements;
-  };
-  static Mesh read(const Entity& entity);
-  static Mesh first_order(const Mesh& mesh);
-  static void write(const Entity& entity, const Mesh& mesh);
+  static void write(const std::map<Entity, Mesh>& meshes);
   static bool same(const Mesh& a, const Mesh& b);
+  /// Corner nodes of each element, in no order.
+  static std::multiset<std::vector<std::size_t>> cells(const Mesh& mesh);
+  /// Entities with a mesh on top of these, or periodic copies of these, and so on, and these.
+  std::set<Entity> depending_on(const std::vector<Entity>& entities) const;
+  void put_back_periodicity(const std::map<Entity, Mesh>& laid_again) const;
+  std::vector<Entity> of_other_cells(const std::vector<Entity>& differing) const;
+  struct Misfits {
+    std::vector<Entity> changed;
+    std::vector<Entity> deleted;
+  };
+  Misfits put_back() const;
 
   const Topology& topology_;
   std::map<Entity, Mesh> meshes_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "gmsh_api.h"
+
 namespace meshgrow {
 
 namespace {
@@ -85,7 +87,10 @@ double SizeAnswers::answer(int dim, int tag, double x, double y, double z,
     return proposed;
   }
   try {
-    const Entity entity{dim, tag};
+    Entity entity{dim, tag};
+    if (tag > gmsh::compound_offset && !field_.topology().contains(entity)) {
+      entity.tag -= gmsh::compound_offset;  // a compound has the sizes of its first part
+    }
     if (!scales_.empty()) {
       const auto scale = scales_.find(entity);
       return scale == scales_.end() ? combined(entity, x, y, z, proposed)

@@ -17,14 +17,6 @@ std::set<int> ends(const Entity& curve, const Topology& topology) {
   return result;
 }
 
-bool has_no_length(const Entity& curve, const Topology& topology) {
-  const Box& box = topology.box(curve);
-  const double scale = box.isEmpty() ? 1.0 : 1.0 + box.max().norm();
-  // Gmsh's boxes are a tolerance of about 1e-7 larger than the entity.
-  return ends(curve, topology).size() == 1 && !box.isEmpty() &&
-         box.diagonal().norm() < 1e-6 * scale;
-}
-
 std::optional<int> shared_end(const Entity& a, const Entity& b, const Topology& topology) {
   const std::set<int> of_a = ends(a, topology);
   for (const int point : ends(b, topology)) {
@@ -91,6 +83,14 @@ std::vector<Side> split_at_corners(const Loop& loop, const std::vector<int>& cor
 }
 
 }  // namespace
+
+bool has_no_length(const Entity& curve, const Topology& topology) {
+  const Box& box = topology.box(curve);
+  const double scale = box.isEmpty() ? 1.0 : 1.0 + box.max().norm();
+  // Gmsh's boxes are a tolerance of about 1e-7 larger than the entity.
+  return ends(curve, topology).size() == 1 && !box.isEmpty() &&
+         box.diagonal().norm() < 1e-6 * scale;
+}
 
 std::vector<OppositeSides> opposite_sides(const MappedSurface& mapped, const Topology& topology,
                                           bool equal_triangles) {

@@ -15,6 +15,9 @@ struct MappedSurface {
   std::vector<int> corners;      ///< tags of three or four points, or none: ends of the curves
 };
 
+/// Whether a curve is a pole, a tip or the like, by its box: Gmsh gives it no elements.
+bool has_no_length(const Entity& curve, const Topology& topology);
+
 /// The pairs of sides that need the same number of intervals: both pairs of four sides; of three
 /// sides, the two at the first corner (all three with `equal_triangles`, Mesh.TransfiniteTri).
 /// Curves of zero length are no sides. Nothing for surfaces that Gmsh cannot map anyway (holes,

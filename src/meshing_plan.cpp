@@ -15,9 +15,10 @@ namespace {
 /// Why an entity has to wait.
 struct Wait {
   static constexpr std::size_t boundary = static_cast<std::size_t>(-1);
+  static constexpr std::size_t master = static_cast<std::size_t>(-2);
 
   Entity target;                    ///< that has to be meshed before
-  std::size_t function = boundary;  ///< whose source it is, or `boundary`
+  std::size_t function = boundary;  ///< whose source it is, or `boundary` or `master`
 };
 
 class Planner {
@@ -72,8 +73,15 @@ class Planner {
           waits.push_back({lower, Wait::boundary});
         }
       }
+      const auto master = task_.masters.find(entity);
+      if (master != task_.masters.end()) {
+        if (is_open(master->second)) {
+          waits.push_back({master->second, Wait::master});
+        }
+        continue;
+      }
       const auto acting = acting_.find(entity);
-      if (acting == acting_.end()) {
+      if (acting == acting_.end() || task_.companions.count(entity) > 0) {
         continue;
       }
       for (const std::size_t i : acting->second) {
@@ -106,10 +114,10 @@ class Planner {
   }
 
   void keep_together() {
-    for (const std::vector<Entity>& curves : task_.together) {
+    for (const std::vector<Entity>& set : task_.together) {
       std::vector<Entity> members;
-      std::copy_if(curves.begin(), curves.end(), std::back_inserter(members),
-                   [this](const Entity& curve) { return is_open(curve); });
+      std::copy_if(set.begin(), set.end(), std::back_inserter(members),
+                   [this](const Entity& member) { return is_open(member); });
       const std::set<Entity> awaited = awaited_by(members);
       if (std::any_of(members.begin(), members.end(),
                       [&awaited](const Entity& member) { return awaited.count(member) > 0; })) {
@@ -144,7 +152,9 @@ class Planner {
       const std::set<Entity> awaited = awaited_by(lower);
       std::vector<Entity> stage;
       for (const auto& [entity, waits] : waits_) {
-        if (entity.dim == dim && is_ready(entity) && (lower.empty() || awaited.count(entity) > 0)) {
+        const bool in_turn = lower.empty() || awaited.count(entity) > 0 ||
+                             task_.companions.count(entity) > 0;
+        if (entity.dim == dim && in_turn && is_ready(entity)) {
           stage.push_back(entity);
         }
       }
@@ -272,9 +282,13 @@ class Planner {
         via = entity_name(step.target);
         continue;
       }
-      text << separator << "grows from " << entity_name(step.target) << " by "
-           << function_name(functions()[step.function], step.function)
-           << (via.empty() ? "" : " (at its " + via + ")");
+      if (step.function == Wait::master) {
+        text << separator << "is a periodic copy of " << entity_name(step.target);
+      } else {
+        text << separator << "grows from " << entity_name(step.target) << " by "
+             << function_name(functions()[step.function], step.function);
+      }
+      text << (via.empty() ? "" : " (at its " + via + ")");
       via.clear();
       separator = ", which ";
     }

@@ -1,6 +1,7 @@
 #ifndef MESHGROW_MESHING_PLAN_H
 #define MESHGROW_MESHING_PLAN_H
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,9 +28,14 @@ struct MeshingTask {
   const Topology& topology;
   const std::vector<SizeFunction>& functions;
   std::set<Entity> meshed;  ///< what has a mesh and keeps it
-  /// Curves whose numbers of intervals depend on each other: each set is meshed in one stage unless
-  /// one of its curves has to wait for another.
+  /// Entities whose meshes depend on each other, such as opposite sides of a mapped surface: each
+  /// set is meshed in one stage unless one of them has to wait for another.
   std::vector<std::vector<Entity>> together;
+  /// Periodic entities, each with the one that it is a copy of: it comes after that, whatever the
+  /// sizes, and waits for no source.
+  std::map<Entity, Entity> masters;
+  /// Entities that Gmsh meshes along with others, whatever the sizes: they wait for no source.
+  std::set<Entity> companions;
 };
 
 /// Orders everything up to dimension `dim` that has no mesh into passes (paper, sections 1, 5.1 and

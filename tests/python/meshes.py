@@ -1,5 +1,6 @@
 """Makes, reads and compares meshes through Gmsh's API."""
 
+import collections
 import contextlib
 
 import gmsh
@@ -134,3 +135,46 @@ class Log:
     @property
     def warnings(self):
         return [m for m in self.messages if m.startswith("Warning: ")]
+
+
+CELL_FACES = {
+    "Tetrahedron": ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)),
+    "Pyramid": ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "Prism": ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    "Hexahedron": ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
+                   (3, 0, 4, 7))}
+FACE_SIDES = {
+    "Triangle": ((0, 1), (1, 2), (2, 0)),
+    "Quadrilateral": ((0, 1), (1, 2), (2, 3), (3, 0)),
+    "Quadrangle": ((0, 1), (1, 2), (2, 3), (3, 0))}
+
+
+def count_sides(entity, sides_of):
+    """How often each set of nodes is a side of an element of the entity."""
+    return collections.Counter(
+        frozenset(element[list(side)].tolist()) for name, sides in sides_of.items()
+        for element in corner_tags(entity, name) for side in sides)
+
+
+def cells_of(entity, names):
+    return [frozenset(c) for name in names for c in corner_tags(entity, name).tolist()]
+
+
+def assert_conforming(*volumes):
+    """Volume meshes of any elements are closed and end at the meshes of their faces."""
+    for volume in volumes:
+        sides = count_sides(volume, CELL_FACES)
+        assert sides and max(sides.values()) == 2
+        on_faces = [c for f in boundary([volume]) for c in cells_of(f, FACE_SIDES)]
+        assert len(set(on_faces)) == len(on_faces)
+        assert {side for side, count in sides.items() if count == 1} == set(on_faces)
+
+
+def assert_conforming_surfaces(*surfaces):
+    """Surface meshes end at the meshes of their curves; seams are in them, from both sides."""
+    for surface in surfaces:
+        sides = count_sides(surface, FACE_SIDES)
+        assert sides and max(sides.values()) == 2
+        on_curves = {c for b in boundary([surface]) for c in cells_of(b, ["Line"])}
+        assert {side for side, count in sides.items() if count == 1} <= on_curves
+        assert on_curves <= set(sides)

@@ -63,29 +63,6 @@ def test_a_registered_field_leaves_other_models_alone():
     field.unregister()
 
 
-def test_a_reparametrised_discrete_surface_is_told_and_kept(tmp_path):
-    gmsh.model.add("made")
-    gmsh.model.occ.addSphere(0, 0, 0, 1)
-    gmsh.model.occ.synchronize()
-    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.4)
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(tmp_path / "ball.stl"))
-    gmsh.model.add("read")
-    gmsh.merge(str(tmp_path / "ball.stl"))
-    gmsh.model.mesh.classifySurfaces(np.pi, True, True)
-    gmsh.model.mesh.createGeometry()
-    surfaces = gmsh.model.getEntities(2)
-    geo = gmsh.model.geo
-    volume = geo.addVolume([geo.addSurfaceLoop([tag for _, tag in surfaces])])
-    geo.synchronize()
-    before = snapshots(surfaces)
-    field = meshgrow.SizeField()
-    field.add_mesh(surfaces, [(3, volume)], 1.5, 2.0)
-    with pytest.raises(meshgrow.Error, match="parametrisation"):
-        field.generate(3)
-    assert snapshots(before) == before
-
-
 @pytest.mark.parametrize("order", [1, 2])
 def test_second_order_premesh_beside_a_mesh_of_either_order(order):
     model = models.sphere_in_box()

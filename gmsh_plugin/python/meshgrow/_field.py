@@ -7,8 +7,9 @@ import numpy as np
 
 from ._library import (PROGRESS_LISTENER, USER_SIZES, check, dim_tags, doubles, lib, points_array,
                        take_text)
+from ._interrupts import interrupts_kept
 from ._plan import Plan
-from ._user_sizes import takes_size_so_far
+from ._raised import Raised
 
 
 class SizeField:
@@ -35,8 +36,7 @@ class SizeField:
 
     def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0,
                  progress=None, calibrate=False):
-        self._raised = None
-        self._sizes_raised = None
+        self._raised = Raised()
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
         if evaluator not in ("grid", "exact"):
@@ -48,7 +48,7 @@ class SizeField:
         self._set("calibrate", calibrate)
         if progress is not None:
             # Kept as long as the field, which calls it.
-            self._listener = PROGRESS_LISTENER(self._listen_with(progress))
+            self._listener = PROGRESS_LISTENER(self._raised.listener(progress))
             check(lib.meshgrow_field_set_progress(self._handle, self._listener, None))
 
     def __del__(self):
@@ -56,22 +56,8 @@ class SizeField:
         if handle:
             lib.meshgrow_field_destroy(handle)
 
-    def _listen_with(self, progress):
-        """A C listener; what `progress` raises stops the work and is raised again by `_check`."""
-        def listen(line, _):
-            try:
-                progress(line.decode())
-            except BaseException as raised:  # KeyboardInterrupt as well
-                self._raised = raised
-                return 1
-            return 0
-        return listen
-
     def _check(self, failed):
-        raised = self._raised or self._sizes_raised
-        self._raised = self._sizes_raised = None
-        if raised is not None:
-            raise raised
+        self._raised.raise_again()
         check(failed)
 
     def _set(self, name, value):
@@ -109,7 +95,10 @@ class SizeField:
         ``remesh``, all that is no source of a mesh size function loses its mesh first; discrete
         entities keep theirs.
         """
-        self._check(lib.meshgrow_field_generate(self._handle, operator.index(dim), bool(remesh)))
+        dim = operator.index(dim)
+        with interrupts_kept(self._raised.keep):
+            failed = lib.meshgrow_field_generate(self._handle, dim, bool(remesh))
+        self._check(failed)
 
     def plan(self, dim=3):
         """The passes of ``generate(dim)``, without meshing: a list of dictionaries with ``dim``,
@@ -130,15 +119,7 @@ class SizeField:
             check(lib.meshgrow_field_combine(self._handle, USER_SIZES(), None))
             self._user_sizes = None
             return
-        call = sizes if takes_size_so_far(sizes) else (lambda d, t, x, y, z, lc: sizes(d, t, x, y, z))
-
-        def guarded(dim, tag, x, y, z, lc, _):
-            try:
-                return call(dim, tag, x, y, z, lc)
-            except BaseException as raised:  # KeyboardInterrupt as well
-                self._sizes_raised = self._sizes_raised or raised
-                return -1.0
-        user_sizes = USER_SIZES(guarded)
+        user_sizes = USER_SIZES(self._raised.sizes(sizes))
         check(lib.meshgrow_field_combine(self._handle, user_sizes, None))
         self._user_sizes = user_sizes  # Kept as long as the field, which calls it.
 

@@ -1,0 +1,26 @@
+#include "temporary_directory.h"
+
+#include <cstdlib>
+#include <string>
+
+#include "error.h"
+
+namespace meshgrow {
+
+TemporaryDirectory::TemporaryDirectory() {
+  std::error_code failed;
+  std::string name = (std::filesystem::temp_directory_path(failed) / "meshgrow-XXXXXX").string();
+  if (failed || ::mkdtemp(name.data()) == nullptr) {
+    throw Error(
+        "No temporary file can be written, which is needed to read constraints of Gmsh's model and "
+        "to set some: set TMPDIR to a writable directory.");
+  }
+  path_ = name;
+}
+
+TemporaryDirectory::~TemporaryDirectory() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace meshgrow
