@@ -152,8 +152,8 @@ class Planner {
       const std::set<Entity> awaited = awaited_by(lower);
       std::vector<Entity> stage;
       for (const auto& [entity, waits] : waits_) {
-        const bool in_turn = lower.empty() || awaited.count(entity) > 0 ||
-                             task_.companions.count(entity) > 0;
+        const bool in_turn =
+            lower.empty() || awaited.count(entity) > 0 || task_.companions.count(entity) > 0;
         if (entity.dim == dim && in_turn && is_ready(entity)) {
           stage.push_back(entity);
         }
