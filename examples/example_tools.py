@@ -39,6 +39,24 @@ def surfaces_of(volumes):
     return [entity for entity in boundary(volumes) if entity[0] == 2]
 
 
+def rounded_box(side, radius):
+    """A cube about the origin with rounded edges, in OpenCASCADE's kernel."""
+    box = gmsh.model.occ.addBox(-side / 2, -side / 2, -side / 2, side, side, side)
+    gmsh.model.occ.synchronize()
+    edges = [tag for _, tag in boundary(boundary([(3, box)]))]
+    return gmsh.model.occ.fillet([box], edges, [radius])[0]
+
+
+def enclose(shape, corner, opposite):
+    """Puts a volume into a box between two corners; returns (inner, outer, common faces)."""
+    occ = gmsh.model.occ
+    box = occ.addBox(*corner, *(b - a for a, b in zip(corner, opposite)))
+    _, (pieces, (inner,)) = occ.fragment([(3, box)], [shape])
+    occ.synchronize()
+    outer, = set(pieces) - {inner}
+    return inner, outer, surfaces_of([inner])
+
+
 def generate(field, what, dim=3):
     """Meshes with the field and says what and how long."""
     print("-- meshing %s" % what, flush=True)
@@ -75,6 +93,11 @@ def show(rows, files):
     print("ratio: size of the larger of two neighbours over the smaller; length/size: edge length over "
           "the size asked for\n(median; good: within 1/1.41 … 1.41). gamma and SICN: element quality, "
           "1 is best.")
+    show_files(files)
+
+
+def show_files(files):
+    """Prints where the results are; None stands for a picture that was not wanted."""
     for path in files:
         if path:
             print("   %s" % os.path.relpath(path))

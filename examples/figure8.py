@@ -19,16 +19,7 @@ COARSE = float(tools.os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests r
 
 def build_geometry():
     """A rounded box in a box of side 8; returns (inner, outer, common faces)."""
-    occ = gmsh.model.occ
-    inner = occ.addBox(-1.5, -1.5, -1.5, 3, 3, 3)
-    occ.synchronize()
-    edges = [tag for _, tag in tools.boundary(tools.boundary([(3, inner)]))]
-    rounded = occ.fillet([inner], edges, [0.6])
-    box = occ.addBox(-4, -4, -4, 8, 8, 8)
-    occ.fragment([(3, box)], rounded)
-    occ.synchronize()
-    by_volume = sorted(gmsh.model.getEntities(3), key=lambda e: occ.getMass(*e))
-    return by_volume[0], by_volume[1], tools.surfaces_of([by_volume[0]])
+    return tools.enclose(tools.rounded_box(3, 0.6), (-4, -4, -4), (4, 4, 4))
 
 
 def premesh(faces):

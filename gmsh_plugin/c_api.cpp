@@ -348,14 +348,14 @@ double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, doub
 
 char* meshgrow_field_summary(meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
-    deref(field).refresh_if_needed();
+    deref(field).read_if_needed();
     return copy_text(deref(field).field().summary());
   });
 }
 
 char* meshgrow_field_summary_json(meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
-    deref(field).refresh_if_needed();
+    deref(field).read_if_needed();
     return copy_text(summary_json(deref(field).field()).dump());
   });
 }

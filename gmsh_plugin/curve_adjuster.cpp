@@ -54,6 +54,29 @@ class FactorSearch {
   bool follows_ = false;
 };
 
+/// The curves in batches whose curves share no end, so that each end belongs to one factor.
+std::vector<std::vector<Entity>> without_common_ends(const std::map<Entity, FactorSearch>& searches,
+                                                     const Topology& topology) {
+  std::vector<std::vector<Entity>> batches;
+  std::vector<std::set<Entity>> ends;
+  for (const auto& [curve, search] : searches) {
+    const std::vector<Entity>& own = topology.lower(curve);
+    std::size_t i = 0;
+    while (i < batches.size() && std::any_of(own.begin(), own.end(), [&](const Entity& end) {
+             return ends[i].count(end) > 0;
+           })) {
+      ++i;
+    }
+    if (i == batches.size()) {
+      batches.emplace_back();
+      ends.emplace_back();
+    }
+    batches[i].push_back(curve);
+    ends[i].insert(own.begin(), own.end());
+  }
+  return batches;
+}
+
 }  // namespace
 
 CurveAdjuster::CurveAdjuster(const Topology& topology, const MeshConstraints& constraints)
@@ -144,22 +167,19 @@ std::vector<Entity> CurveAdjuster::adjust(const std::vector<Entity>& stage,
       }
     }
     for (int round = 0; round < most_rounds && !searches.empty(); ++round) {
-      std::vector<Entity> curves;
-      std::map<Entity, SizeAnswers::Scale> present;
-      for (const auto& [curve, search] : searches) {
-        curves.push_back(curve);
-        present[curve] = scales[curve];
-        present[curve].factor = search.factor();
-        // In Gmsh 4.8 the ends alone tell the size there.
-        for (const Entity& end : topology_.lower(curve)) {
-          SizeAnswers::Scale& at_end = present.insert({end, {search.factor(), {}}}).first->second;
-          at_end.factor = std::min(at_end.factor, search.factor());
-          at_end.mesh.insert(at_end.mesh.end(), scales[curve].mesh.begin(),
-                             scales[curve].mesh.end());
+      for (const std::vector<Entity>& curves : without_common_ends(searches, topology_)) {
+        std::map<Entity, SizeAnswers::Scale> present;
+        for (const Entity& curve : curves) {
+          present[curve] = scales[curve];
+          present[curve].factor = searches.at(curve).factor();
+          // In Gmsh 4.8 the ends alone tell the size there.
+          for (const Entity& end : topology_.lower(curve)) {
+            present[end] = present[curve];
+          }
         }
+        mesh_again(curves, std::move(present));
+        meshed_again.insert(curves.begin(), curves.end());
       }
-      mesh_again(curves, std::move(present));
-      meshed_again.insert(curves.begin(), curves.end());
       for (auto entry = searches.begin(); entry != searches.end();) {
         const int count = interval_count(entry->first);
         if (count == entry->second.wanted()) {

@@ -184,12 +184,15 @@ void ModelField::read_all(bool wait_for_meshes) {
   sources_read_ = true;
 }
 
-void ModelField::refresh_if_needed() {
+void ModelField::read_if_needed() {
   if (!sources_read_ || gmsh::option("Mesh.MeshSizeFactor") != size_factor_) {
     refresh();
-  } else {
-    field_.build();
   }
+}
+
+void ModelField::refresh_if_needed() {
+  read_if_needed();
+  field_.build();
 }
 
 void ModelField::register_callback() {

@@ -62,6 +62,8 @@ class ModelField {
   /// `refresh` unless sources were read since the last function was added; builds what is not
   /// built.
   void refresh_if_needed();
+  /// The same, but leaves trees and grids that are out of date as they are if sources were read.
+  void read_if_needed();
 
   /// Registers the field as Gmsh's size callback, sources read as they are now. A source that gets
   /// its mesh in a lower dimension of a later run of Gmsh is read when sizes of a higher one are
