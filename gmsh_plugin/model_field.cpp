@@ -4,7 +4,6 @@
 #include <chrono>
 #include <numeric>
 
-#include "calibration.h"
 #include "error.h"
 #include "geometry_sampler.h"
 #include "gmsh_api.h"
@@ -199,7 +198,7 @@ void ModelField::register_callback() {
   const CurrentModel current(model_);
   SizeCallback::check_free_for(model_);
   read_all(true);
-  set_calibration();
+  adapt_to_meshers();
   answers_.set_reader([this](int dim) { read_late_sources(dim); },
                       [](const Entity& curve) { return gmsh::has_elements(curve); });
   callback_.reset();
@@ -232,15 +231,30 @@ void ModelField::read_late_sources(int dim) {
   field_.build_trees();
 }
 
-void ModelField::set_calibration() {
-  std::array<double, 4> factors{1.0, 1.0, 1.0, 1.0};
+void ModelField::adapt_to_meshers() {
+  const auto algorithm_2d = static_cast<int>(gmsh::option("Mesh.Algorithm"));
+  const auto algorithm_3d = static_cast<int>(gmsh::option("Mesh.Algorithm3D"));
   if (calibrate_) {
-    const auto algorithm_2d = static_cast<int>(gmsh::option("Mesh.Algorithm"));
-    const auto algorithm_3d = static_cast<int>(gmsh::option("Mesh.Algorithm3D"));
-    factors = {1.0, calibration_factor(1, 0), calibration_factor(2, algorithm_2d),
-               calibration_factor(3, algorithm_3d)};
+    answers_.calibrate(std::array<int, 4>{0, 0, algorithm_2d, algorithm_3d});
+  } else {
+    answers_.calibrate(std::nullopt);
   }
-  answers_.set_calibration(factors);
+  const auto attached_dim = [this](int dim) {
+    return std::any_of(field_.functions().begin(), field_.functions().end(),
+                       [dim](const SizeFunction& f) { return highest(f.attachments) >= dim; });
+  };
+  if (algorithm_2d == 7 && attached_dim(1)) {
+    gmsh::log(
+        "Mesh.Algorithm is 7 (BAMG), which asks for no sizes: the size functions do not act on "
+        "curves and surfaces; choose 6 (Frontal-Delaunay) or 5 (Delaunay).",
+        "warning");
+  }
+  if (algorithm_3d == 4 && attached_dim(3)) {
+    gmsh::log(
+        "Mesh.Algorithm3D is 4 (Frontal), which hardly asks for sizes: the size functions do not "
+        "act inside volumes; choose 1 (Delaunay) or 10 (HXT).",
+        "warning");
+  }
 }
 
 std::vector<MeshingPass> ModelField::plan(int dim) const {
@@ -266,7 +280,7 @@ void ModelField::generate(int dim, bool remesh) {
     }
   };
   try {
-    set_calibration();
+    adapt_to_meshers();
     if (remesh) {
       OrderedMesher::clear_all_but_sources(field_);
     }

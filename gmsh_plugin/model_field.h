@@ -101,7 +101,8 @@ class ModelField {
   void read_all(bool wait_for_meshes);
 
   std::vector<Entity> unmeshed_sources(std::size_t function) const;
-  void set_calibration();
+  /// Calibrates for the meshers chosen in Gmsh, and warns of those that ask for no sizes.
+  void adapt_to_meshers();
 
   /// Warns once of (with `strict`: throws for) a mesh size function with unmeshed sources.
   void report_unmeshed(std::size_t function);

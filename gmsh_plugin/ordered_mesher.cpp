@@ -135,10 +135,12 @@ void OrderedMesher::generate(int dim) {
         passes = plan(dim);
       }
     }
+    model_field_.answers_.set_boundary(nullptr);
     premeshed_.put_back_changed();
     read_new_sources();
   } catch (...) {
     model_field_.answers_.clear_scales();
+    model_field_.answers_.set_boundary(nullptr);
     premeshed_.put_back_missing();
     premeshed_.put_back_after_error();
     throw;
@@ -333,6 +335,10 @@ void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
   state_.show_only(entities, gmsh::entities());
   if (entities.front().dim == 3) {
     protect_discrete_faces(entities);
+    const bool by_distance = attached && model_field_.answers_.is_calibrated();
+    model_field_.answers_.set_boundary(
+        by_distance ? std::make_unique<const BoundaryDistance>(entities, field_.topology())
+                    : nullptr);
   }
   try {
     gmsh::generate(entities.front().dim);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "calibration.h"
 #include "gmsh_api.h"
 
 namespace meshgrow {
@@ -56,11 +57,23 @@ void SizeAnswers::follow_run(const Entity& entity) const {
   }
 }
 
+double SizeAnswers::calibrated(int dim, const Vec3& p, double size) const {
+  if (!algorithms_ || !is_size(size)) {
+    return size;
+  }
+  const int algorithm = algorithms_->at(static_cast<std::size_t>(dim));
+  const double factor =
+      dim == 3 && boundary_
+          ? calibration_factor(dim, algorithm, (*boundary_)(p, calibration_depth * size) / size)
+          : calibration_factor(dim, algorithm);
+  return factor * size;
+}
+
 double SizeAnswers::combined(const Entity& entity, double x, double y, double z,
                              double proposed) const {
   double result = proposed;
-  const double size =
-      field_.size(entity, Vec3(x, y, z)) * calibration_[static_cast<std::size_t>(entity.dim)];
+  const Vec3 p(x, y, z);
+  const double size = calibrated(entity.dim, p, field_.size(entity, p));
   if (is_size(size) && size < result) {
     result = size;
   }

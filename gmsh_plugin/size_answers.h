@@ -5,9 +5,12 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <shared_mutex>
 #include <vector>
 
+#include "boundary_distance.h"
 #include "size_field.h"
 
 namespace meshgrow {
@@ -34,8 +37,14 @@ class SizeAnswers {
   /// The user's own sizes beside the field; none if empty.
   void combine(UserSizes sizes) { user_sizes_ = std::move(sizes); }
 
-  /// Factors on the field's sizes by dimension (calibration.h).
-  void set_calibration(const std::array<double, 4>& factors) { calibration_ = factors; }
+  /// Multiplies the field's sizes by measured factors (calibration.h) for these meshers: Gmsh's
+  /// numbers by dimension. None, without the argument.
+  void calibrate(const std::optional<std::array<int, 4>>& algorithms) { algorithms_ = algorithms; }
+  bool is_calibrated() const { return algorithms_.has_value(); }
+  /// The boundary of the volumes that are meshed next, for the factors beside it; none if null.
+  void set_boundary(std::unique_ptr<const BoundaryDistance> boundary) {
+    boundary_ = std::move(boundary);
+  }
 
   /// How much longer than asked the elements of a curve, or at a point at its end, are to be.
   /// `mesh` is a mesh of it by Gmsh's own sizes, which are scaled where neither field nor user has
@@ -64,6 +73,7 @@ class SizeAnswers {
                   std::function<bool(const Entity& curve)> has_mesh);
 
  private:
+  double calibrated(int dim, const Vec3& p, double size) const;
   double combined(const Entity& entity, double x, double y, double z, double proposed) const;
   double scaled(const Scale& scale, const Entity& entity, double x, double y, double z,
                 double proposed) const;
@@ -71,7 +81,8 @@ class SizeAnswers {
 
   const SizeField& field_;
   UserSizes user_sizes_;
-  std::array<double, 4> calibration_{1.0, 1.0, 1.0, 1.0};
+  std::optional<std::array<int, 4>> algorithms_;
+  std::unique_ptr<const BoundaryDistance> boundary_;
   std::map<Entity, Scale> scales_;
   Range range_;
   double unit_ = 1.0;
