@@ -85,8 +85,11 @@ def main():
     names = sys.argv[1:] or list(MODELS)
     if not set(names) <= set(MODELS):
         sys.exit("error: choose from %s" % ", ".join(MODELS))
+    gmsh.initialize(readConfigFiles=False)
+    version = gmsh.option.getString("General.Version")
+    gmsh.finalize()
     print("Gmsh %s\nmodel    part    mesher    calibrate   elements  median      good   99 %%      s"
-          % gmsh.GMSH_API_VERSION)
+          % version)
     for name in names:
         for algorithm in ALGORITHMS:
             for calibrate in (False, True):
