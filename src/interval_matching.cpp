@@ -1,16 +1,15 @@
 #include "interval_matching.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "error.h"
+#include "interval_search.h"
 
 namespace meshgrow {
 
 namespace {
-
-/// More intervals than any curve will have: a demand that grows beyond it has no solution.
-constexpr int most_intervals = 1 << 24;
 
 class Matcher {
  public:
@@ -32,9 +31,18 @@ class Matcher {
   }
 
   std::map<Entity, int> match() {
-    while (obey_fixed_side(1) || obey_fixed_side(most_intervals) || raise_smaller_side()) {
-    }
     std::map<Entity, int> result;
+    try {
+      while (obey_fixed_side(1) || obey_fixed_side(most_intervals) || raise_smaller_sides()) {
+      }
+    } catch (const Error&) {
+      // Sharing in proportion may end in a contradiction where other numbers would do.
+      const std::optional<std::map<Entity, int>> found = search_intervals(sides_, wanted_);
+      if (!found) {
+        throw;
+      }
+      return *found;
+    }
     for (const auto& [curve, intervals] : curves_) {
       result[curve] = intervals.count;
     }
@@ -60,6 +68,7 @@ class Matcher {
   /// Gives the free curves of one side, at most `most_free`, what the fixed other side asks of
   /// them, and fixes them. False if there is no such pair of sides.
   bool obey_fixed_side(std::size_t most_free) {
+    bool any = false;
     for (const OppositeSides& pair : sides_) {
       for (const bool swapped : {false, true}) {
         const std::vector<Entity>& fixed = swapped ? pair.second : pair.first;
@@ -76,14 +85,18 @@ class Matcher {
           for (const Entity& curve : free) {
             curves_[curve].fixed = true;
           }
-          return true;
+          any = true;
+          if (most_free > 1) {
+            return true;  // what is left may follow from it curve by curve
+          }
         }
       }
     }
-    return false;
+    return any;
   }
 
-  bool raise_smaller_side() {
+  bool raise_smaller_sides() {
+    bool any = false;
     for (const OppositeSides& pair : sides_) {
       const int difference = sum(pair.first) - sum(pair.second);
       if (difference != 0) {
@@ -96,13 +109,15 @@ class Matcher {
           refuse(pair);
         }
         distribute_upwards(raised, std::abs(difference));
-        if (sum(pair.first) > most_intervals) {
+        // Along a chain of surfaces, each may be raised once for every one behind it.
+        const std::size_t most_raises = 1000 + sides_.size() * (sides_.size() + 100);
+        if (sum(pair.first) > most_intervals || ++raises_ > most_raises) {
           refuse(pair);
         }
-        return true;
+        any = true;
       }
     }
-    return false;
+    return any;
   }
 
   /// How far a curve is from what it wanted: present number over wanted number.
@@ -169,6 +184,7 @@ class Matcher {
   }
 
   const std::vector<OppositeSides>& sides_;
+  std::size_t raises_ = 0;
   std::map<Entity, CurveIntervals> curves_;
   std::map<Entity, CurveIntervals> wanted_;
 };

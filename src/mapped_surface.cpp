@@ -27,7 +27,8 @@ std::optional<int> shared_end(const Entity& a, const Entity& b, const Topology& 
   return std::nullopt;
 }
 
-/// The curves in a row, each with the point where it begins; empty if they make no single loop.
+/// The curves in a row, each with the point where it begins; empty if they make no single loop or
+/// pass a point twice.
 struct Loop {
   std::vector<Entity> curves;
   std::vector<int> begins;
@@ -62,7 +63,9 @@ Loop chain(std::vector<Entity> curves, const Topology& topology) {
     current = *next;
     curves.erase(next);
   }
-  return curves.empty() && at == start ? loop : Loop();
+  const bool is_simple =
+      std::set<int>(loop.begins.begin(), loop.begins.end()).size() == loop.begins.size();
+  return curves.empty() && at == start && is_simple ? loop : Loop();
 }
 
 std::vector<Side> split_at_corners(const Loop& loop, const std::vector<int>& corners) {
@@ -79,7 +82,7 @@ std::vector<Side> split_at_corners(const Loop& loop, const std::vector<int>& cor
     }
     sides.back().push_back(loop.curves[at]);
   }
-  return sides;
+  return sides.size() == corners.size() ? sides : std::vector<Side>();
 }
 
 }  // namespace

@@ -648,6 +648,151 @@ TEST(SizeField, UnchangedGroupsAreNotBuiltAgain) {
   EXPECT_EQ(calls, 0);
 }
 
+// ==== Start sizes in another unit
+
+TEST(SizeField, StartSizesReadFromAMeshAreDividedByTheUnit) {
+  SizeField field(two_cubes(), exact_options());
+  field.add(mesh_function({left_end}, {left_volume}));
+  const Vec3 p(0.5, 0.5, 0.5);
+  for (const double unit : {2.0, 0.25, 1.0}) {
+    // The same facets with other sizes are a change.
+    field.set_sources(0, {end_mesh(left_end, 0.0, 4)}, unit);
+    field.build();
+    // Growth and distances stay in model units.
+    EXPECT_NEAR(field.size(left_volume, {0, 0.5, 0.5}), end_mesh_size(4) / unit, 1e-12) << unit;
+    EXPECT_NEAR(field.size(left_volume, p), std::min(2.0, end_mesh_size(4) / unit + 0.1), 1e-12)
+        << unit;
+    EXPECT_EQ(field.groups()[0].size_limit, 2.0);
+  }
+}
+
+TEST(SizeField, UnitIsOneUnlessGiven) {
+  SizeField given(two_cubes(), exact_options());
+  given.add(mesh_function({left_end}, {left_volume}));
+  given.set_sources(0, {end_mesh(left_end, 0.0, 4)}, 1.0);
+  given.build();
+  const Vec3 p(0.25, 0.5, 0.5);
+  EXPECT_EQ(given.size(left_volume, p), left_field(exact_options()).size(left_volume, p));
+}
+
+TEST(SizeField, GivenSizesAreInEveryUnitTheSame) {
+  SizeField field(two_cubes(), exact_options());
+  field.add(fixed_function({{0, 5}}, {right_volume}, 0.125));
+  field.set_sources(0, {point_source({0, 5}, {2, 0, 0})}, 4.0);
+  field.build();
+  EXPECT_NEAR(field.size({0, 5}, {2, 0, 0}), 0.125, 1e-15);
+}
+
+TEST(SizeField, UnitHoldsForAllElementsOfAllSources) {
+  FacetedSource quads;
+  quads.entity = right_end;
+  quads.quads = {{Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(2, 1, 1), Vec3(2, 0, 1)}};
+  FacetedSource segments;
+  segments.entity = {1, 7};
+  segments.segments = {{Vec3(5, 0, 0), Vec3(5.5, 0, 0)}};
+  SizeField field(two_cubes(), exact_options());
+  field.add(
+      mesh_function({left_end, right_end, {1, 7}}, {left_volume, right_volume, lone_surface}, 2.0));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 4), quads, segments}, 2.0);
+  field.build();
+  EXPECT_NEAR(field.size(left_volume, {0, 0.5, 0.5}), end_mesh_size(4) / 2.0, 1e-12);
+  EXPECT_NEAR(field.size(right_volume, {2, 0.5, 0.5}), end_mesh_size(1) / 2.0, 1e-12);
+  EXPECT_NEAR(field.size(lone_surface, {5.25, 0, 0}), 0.25, 1e-12);
+}
+
+TEST(SizeField, TheSameFacetsInTheSameUnitAreNoChange) {
+  int calls = 0;
+  FieldOptions options = grid_options();
+  options.progress = [&](const std::string&, double) { ++calls; };
+  SizeField field(two_cubes(), options);
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 40)}, 3.0);
+  field.build();
+  EXPECT_GT(calls, 0);
+  calls = 0;
+  field.set_sources(0, {end_mesh(left_end, 0.0, 40)}, 3.0);
+  field.build();
+  EXPECT_EQ(calls, 0);
+  field.set_sources(0, {end_mesh(left_end, 0.0, 40)}, 1.5);
+  field.build();
+  EXPECT_GT(calls, 0);
+}
+
+// ==== Trees without grids
+
+TEST(SizeField, TreesAloneAnswerExactlyAndBuildNoGrid) {
+  int calls = 0;
+  FieldOptions options = grid_options();
+  options.progress = [&](const std::string&, double) { ++calls; };
+  SizeField field(two_cubes(), options);
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.add(mesh_function({right_end}, {right_volume}));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 40)});
+  field.set_sources(1, {end_mesh(right_end, 2.0, 20)});
+  field.build_trees();
+  EXPECT_EQ(calls, 0);
+  for (const SizeField::GroupSummary& group : field.groups()) {
+    EXPECT_FALSE(group.has_grid);
+    EXPECT_GT(group.facets, 0u);
+  }
+  const Vec3 p(0.3, 0.4, 0.7);
+  EXPECT_NEAR(field.size(left_volume, p), end_mesh_size(40) + 0.06, 1e-12);
+  EXPECT_NEAR(field.size(right_volume, {1.5, 0.5, 0.5}), end_mesh_size(20) + 0.1, 1e-12);
+}
+
+TEST(SizeField, BuildAfterTreesMakesTheGridsThatAreAskedFor) {
+  SizeField field(two_cubes(), grid_options());
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.add(mesh_function({right_end}, {right_volume}));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 4)});
+  field.set_sources(1, {end_mesh(right_end, 2.0, 4)});
+  field.build_trees();
+  field.build({left_volume});
+  for (const SizeField::GroupSummary& group : field.groups()) {
+    EXPECT_EQ(group.has_grid,
+              std::count(group.entities.begin(), group.entities.end(), left_volume));
+  }
+  field.build();
+  for (const SizeField::GroupSummary& group : field.groups()) {
+    EXPECT_TRUE(group.has_grid);
+  }
+}
+
+TEST(SizeField, TreesOfUnchangedGroupsKeepTheirGrids) {
+  SizeField field(two_cubes(), grid_options());
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.add(mesh_function({right_end}, {right_volume}));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 4)});
+  field.set_sources(1, {end_mesh(right_end, 2.0, 4)});
+  field.build();
+  field.set_sources(1, {end_mesh(right_end, 2.0, 8)});
+  field.build_trees();
+  std::size_t with_grid = 0;
+  for (const SizeField::GroupSummary& group : field.groups()) {
+    const bool changed = std::count(group.functions.begin(), group.functions.end(), 1u) > 0;
+    EXPECT_EQ(group.has_grid, !changed);
+    with_grid += group.has_grid ? 1 : 0;
+  }
+  EXPECT_EQ(with_grid, 1u);
+  // A grid of the mesh before would answer here.
+  EXPECT_NEAR(field.size(right_volume, {2, 0.5, 0.5}), end_mesh_size(8), 1e-12);
+  EXPECT_NEAR(field.size(middle, {1, 0.5, 0.5}), end_mesh_size(8) + 0.2, 1e-12);
+}
+
+TEST(SizeField, TreesOfFunctionsWithoutSourcesHaveNoEffect) {
+  SizeField field(two_cubes(), grid_options());
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.build_trees();
+  EXPECT_EQ(field.size(left_volume, {0.5, 0.5, 0.5}), SizeField::no_size);
+  field.set_sources(0, {end_mesh(left_end, 0.0, 4)});
+  EXPECT_EQ(field.size(left_volume, {0.5, 0.5, 0.5}), SizeField::no_size);
+  field.build_trees();
+  EXPECT_NEAR(field.size(left_volume, {0.5, 0.5, 0.5}), end_mesh_size(4) + 0.1, 1e-12);
+  field.set_sources(0, {});
+  field.build_trees();
+  EXPECT_EQ(field.size(left_volume, {0.5, 0.5, 0.5}), SizeField::no_size);
+}
+
 // ==== Messages
 
 TEST(SizeField, ProgressTellsWhatIsBuiltAndHowFar) {
