@@ -117,6 +117,11 @@ Version require_gmsh() {
   return version;
 }
 
+bool is_4_8() {
+  const Version version = require_gmsh();
+  return version.major == 4 && version.minor == 8;
+}
+
 void initialize(const std::vector<std::string>& arguments) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) {

@@ -24,6 +24,9 @@ struct Version {
 Version require_gmsh();
 
 /// Starts Gmsh with a command line of its own; reads its configuration files as the program does.
+/// Whether this is the old generation: one size callback for all models, no proposal passed to it.
+bool is_4_8();
+
 void initialize(const std::vector<std::string>& arguments);
 void finalize();
 void open(const std::string& file);

@@ -335,6 +335,10 @@ void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
   state_.show_only(entities, gmsh::entities());
   if (entities.front().dim == 3) {
     protect_discrete_faces(entities);
+    if (gmsh::option("Mesh.Algorithm3D") == 10.0 && gmsh::is_4_8()) {
+      // On several threads HXT of 4.8 leaves holes now and then.
+      state_.set_option("Mesh.MaxNumThreads3D", 1.0);
+    }
     const bool by_distance = attached && model_field_.answers_.is_calibrated();
     model_field_.answers_.set_boundary(
         by_distance ? std::make_unique<const BoundaryDistance>(entities, field_.topology())

@@ -23,14 +23,7 @@ std::map<std::string, std::vector<SizeCallback::Slot*>>& registered_slots() {
   return slots;
 }
 
-bool has_one_callback_for_all_models() {
-  const gmsh::Version version = gmsh::require_gmsh();
-  return version.major == 4 && version.minor == 8;
-}
-
-std::string key_of(const std::string& model) {
-  return has_one_callback_for_all_models() ? "" : model;
-}
+std::string key_of(const std::string& model) { return gmsh::is_4_8() ? "" : model; }
 
 double answer_from(void* slot, int dim, int tag, double x, double y, double z, double proposed) {
   const SizeAnswers* answers = static_cast<const SizeCallback::Slot*>(slot)->answers;
@@ -73,7 +66,7 @@ void hand_to_gmsh(SizeCallback::Slot* slot) {
 }  // namespace
 
 void SizeCallback::check_free_for(const std::string& model) {
-  if (!has_one_callback_for_all_models()) {
+  if (!gmsh::is_4_8()) {
     return;
   }
   const std::vector<std::string> models = gmsh::models();

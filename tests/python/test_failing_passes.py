@@ -119,8 +119,6 @@ def test_failing_pass_over_volumes_keeps_what_was_meshed_before():
 @pytest.mark.parametrize("algorithm", [1, 10], ids=["Delaunay", "HXT"])
 @pytest.mark.parametrize("threads", [1, 2, 4])
 def test_meshes_made_by_several_threads_are_valid_and_conform(threads, algorithm):
-    if gmsh.__version__.startswith("4.8") and algorithm == 10 and threads > 1:
-        pytest.skip("HXT of Gmsh 4.8 alone leaves holes on several threads, one time in ten")
     volumes = models.nested_boxes(2, smallest=2.0)
     inner, outer = volumes
     faces = models.faces_of(inner[1])
