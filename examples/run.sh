@@ -11,4 +11,4 @@ for example in "${@:-${all[@]}}"; do
   say "Running examples/$example.py"
   "$python_newest" "examples/$example.py"
 done
-say "Done. Look at the pictures in examples/out, or open a mesh: gmsh examples/out/figure8_with.msh"
+say "Done. Look at the pictures in examples/out, or open a mesh: gmsh $(ls -t examples/out/*.msh | head -n 1)"
