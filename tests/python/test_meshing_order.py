@@ -198,3 +198,31 @@ def test_remesh_leaves_discrete_entities_their_mesh():
     field = meshgrow.SizeField()
     field.generate(2, remesh=True)
     assert element_count((2, tag)) == 1
+
+
+def test_groups_fields_and_names_of_the_user_are_as_before():
+    model = models.two_boxes()
+    premesh([model.between], 0.3)
+    group = gmsh.model.addPhysicalGroup(2, [model.between[1]])
+    gmsh.model.setPhysicalName(2, group, "between")
+    background = gmsh.model.mesh.field.add("MathEval")
+    gmsh.model.mesh.field.setString(background, "F", "0.4")
+    gmsh.model.mesh.field.setAsBackgroundMesh(background)
+    gmsh.model.setEntityName(*model.left, "the left one")
+
+    def state():
+        groups = gmsh.model.getPhysicalGroups()
+        return ([(g, gmsh.model.getPhysicalName(*g),
+                  list(gmsh.model.getEntitiesForPhysicalGroup(*g))) for g in groups],
+                gmsh.model.getEntities(), gmsh.model.getEntityName(*model.left),
+                gmsh.model.getCurrent(), gmsh.option.getNumber("General.Verbosity"))
+    before = state()
+    field = meshgrow.SizeField()
+    field.add_mesh([model.between], [model.right], 1.2, 0.5)
+    field.generate(3)
+    assert state() == before
+    # The background field still rules what is no attachment.
+    largest = meshgrow.report(3, [model.left])["largest_size"]
+    gmsh.model.mesh.clear()
+    gmsh.model.mesh.generate(3)
+    assert meshgrow.report(3, [model.left])["largest_size"] == pytest.approx(largest, rel=0.3)

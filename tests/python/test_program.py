@@ -185,3 +185,42 @@ def test_unknown_option_is_named(box):
 
 if __name__ == "__main__":
     sys.exit(pytest.main([__file__]))
+
+
+def test_plan_prints_the_passes_and_meshes_nothing(box, tmp_path):
+    out = tmp_path / "out.msh"
+    text = mesh(box, "--plan", "-o", out, "--size-function", FIXED, "--size-function", MESH)
+    assert not out.exists() and "Meshing" not in text
+    passes = [line for line in text.splitlines() if line.startswith("Pass ")]
+    assert passes[0].startswith("Pass 1: dimension 1, Curve ")
+    assert passes[-1] == "Pass %d: dimension 3, Volume 1 and Volume 2" % len(passes)
+    assert "sizes from Fixed size function 1" in text and "reads Surface 2" in text
+
+
+def test_functions_that_wait_for_each_other_are_refused_with_the_cycle(box):
+    result = run("mesh", box, "--plan",
+                 "--size-function", "mesh source Surface{1} attach Surface{3} growth 1.2 limit 1",
+                 "--size-function", "mesh source Surface{3} attach Surface{1} growth 1.2 limit 1")
+    assert_refused(result, "Surface 1 grows from Surface 3 by Mesh size function 2",
+                   "which grows from Surface 1 by Mesh size function 1")
+
+
+def test_remesh_meshes_again_what_is_no_source(box, tmp_path):
+    """The mesh is kept beside its geometry: a second .geo merges both."""
+    first, again = tmp_path / "first.msh", tmp_path / "again.msh"
+    mesh(box, "-3", "-o", first, "--size-function", FIXED)
+    both = tmp_path / "both.geo"
+    both.write_text(BOX + 'Merge "first.msh";\n')
+    texts = [mesh(both, "-3", "-o", again, *remesh, "--size-function",
+                  "fixed source Volume{1} attach Volume{1} size 0.05 growth 1.2 limit 0.05")
+             for remesh in ([], ["--remesh"])]
+    assert "Meshing, pass" not in texts[0] and "Meshing, pass" in texts[1]
+
+
+def test_calibrated_sizes_make_more_elements(box, tmp_path):
+    sizes = []
+    for extra in ([], ["--calibrate"]):
+        out = tmp_path / "out.msh"
+        mesh(box, "-3", "-o", out, "--size-function", FIXED, *extra)
+        sizes.append(out.stat().st_size)
+    assert sizes[1] > 1.2 * sizes[0]
