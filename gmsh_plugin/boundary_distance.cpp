@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "model_reader.h"
+#include "start_sizes/fixed_start_sizes.h"
 
 namespace meshgrow {
 
@@ -14,19 +15,9 @@ SizedFacets distance_facets(const std::vector<Entity>& volumes, const Topology& 
   constexpr double slope = 1.0 - std::numeric_limits<double>::epsilon();
   const NodeCoordinates nodes;
   SizedFacets facets;
-  DroppedFacets dropped;
   for (const Entity& entity : topology.closure(volumes)) {
-    if (entity.dim != 2) {
-      continue;
-    }
-    const FacetedSource mesh = read_entity_mesh(entity, nodes);
-    for (const auto& [a, b, c] : mesh.triangles) {
-      append_facet(Facet::triangle(a, b, c), from, slope, facets, dropped);
-    }
-    for (const auto& quad : mesh.quads) {
-      for (const Facet& half : split_quad(quad)) {
-        append_facet(half, from, slope, facets, dropped);
-      }
+    if (entity.dim == 2) {
+      append_fixed_start_sizes(read_entity_mesh(entity, nodes), from, slope, facets);
     }
   }
   return facets;
