@@ -307,23 +307,21 @@ void OrderedMesher::protect_discrete_faces(const std::vector<Entity>& volumes) c
       // Gmsh counts no discrete surfaces when it asks whether surfaces are meshed, and then meshes
       // those with a parametrisation again. A single element, which it removes, says that
       // the model is meshed up to volumes.
-      const std::vector<std::size_t> nodes = gmsh::all_nodes().tags;
-      if (nodes.size() >= 4 && !gmsh::has_elements(volumes.front())) {
+      if (!gmsh::has_elements(volumes.front())) {
+        const std::size_t node = gmsh::elements(entity).front().node_tags.front();
         gmsh::add_elements(volumes.front(),
-                           {{gmsh::tetrahedron_type, {}, {nodes.begin(), nodes.begin() + 4}}});
+                           {{gmsh::tetrahedron_type, {}, {node, node, node, node}}});
       }
       return;
     }
   }
 }
 
-void OrderedMesher::remove_protection(const std::vector<Entity>& entities) const {
-  if (entities.front().dim == 3) {
-    const std::vector<gmsh::Elements> elements = gmsh::elements(entities.front());
-    if (elements.size() == 1 && elements.front().tags.size() == 1 &&
-        elements.front().type == gmsh::tetrahedron_type) {
-      gmsh::clear_mesh({entities.front()});
-    }
+void OrderedMesher::remove_protection(const Entity& volume) const {
+  const std::vector<gmsh::Elements> elements = gmsh::elements(volume);
+  if (volume.dim == 3 && elements.size() == 1 && elements.front().node_tags.size() == 4 &&
+      elements.front().node_tags[0] == elements.front().node_tags[1]) {
+    gmsh::clear_mesh({volume});
   }
 }
 
@@ -347,11 +345,11 @@ void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
   try {
     gmsh::generate(entities.front().dim);
   } catch (const Error& error) {
-    remove_protection(entities);
+    remove_protection(entities.front());
     check_faces_stayed(entities, name);
     throw Error("Meshing stopped in " + name + ": " + error.what());
   }
-  remove_protection(entities);
+  remove_protection(entities.front());
   check_faces_stayed(entities, name);
   premeshed_.put_back_missing();
 }

@@ -51,7 +51,7 @@ class OrderedMesher {
                                   const std::string& pass_name);
   void mesh(const std::vector<Entity>& entities, bool attached, const std::string& name);
   void protect_discrete_faces(const std::vector<Entity>& volumes) const;
-  void remove_protection(const std::vector<Entity>& entities) const;
+  void remove_protection(const Entity& volume) const;
   void adjust_curves(const std::vector<Entity>& stage);
   void keep_from_curve_passes(const std::vector<Entity>& surfaces);
   void mesh_lost_faces();
