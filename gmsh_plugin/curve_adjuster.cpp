@@ -81,7 +81,8 @@ std::vector<std::vector<Entity>> without_common_ends(const std::map<Entity, Fact
 
 CurveAdjuster::CurveAdjuster(const Topology& topology, const MeshConstraints& constraints)
     : topology_(topology), constraints_(constraints) {
-  const bool equal_triangles = gmsh::option_or("Mesh.TransfiniteTri", 0.0) != 0.0;
+  const bool equal_triangles =
+      !constraints.mapped_surfaces.empty() && gmsh::option_or("Mesh.TransfiniteTri", 0.0) != 0.0;
   for (const MappedSurface& mapped : constraints_.mapped_surfaces) {
     if (topology.contains(mapped.surface) && !gmsh::has_elements(mapped.surface)) {
       for (OppositeSides& pair : opposite_sides(mapped, topology, equal_triangles)) {
@@ -132,14 +133,18 @@ std::map<Entity, CurveIntervals> CurveAdjuster::intervals_now(const std::set<Ent
   }
   std::map<Entity, CurveIntervals> result;
   for (const OppositeSides& pair : sides_) {
-    for (const std::vector<Entity>* side : {&pair.first, &pair.second}) {
+    for (const std::vector<Entity>* side : {&pair.first, &pair.second, &pair.instead}) {
       for (const Entity& curve : *side) {
         const auto prescribed = constraints_.prescribed_intervals.find(curve);
         const bool is_prescribed = prescribed != constraints_.prescribed_intervals.end();
         const int count = interval_count(curve);
         CurveIntervals intervals;
-        intervals.even = !is_prescribed && beside_recombined.count(curve) > 0;
-        intervals.fixed = is_prescribed || (count > 0 && stage.count(curve) == 0);
+        // Of itself Gmsh gives curves beside recombined surfaces even numbers: an odd one was
+        // prescribed (for an arc, which the .geo text leaves out).
+        const bool beside = beside_recombined.count(curve) > 0;
+        intervals.even = !is_prescribed && beside && count % 2 == 0;
+        intervals.fixed =
+            is_prescribed || (beside && count % 2 != 0) || (count > 0 && stage.count(curve) == 0);
         intervals.count = count > 0 ? count : is_prescribed ? prescribed->second : 1;
         result[curve] = intervals;
       }

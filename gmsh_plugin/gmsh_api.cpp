@@ -244,6 +244,8 @@ Entity add_discrete_point() {
 void remove_entity(const Entity& entity) {
   std::array<int, 2> dim_tag = {entity.dim, entity.tag};
   library().call("gmshModelRemoveEntities", dim_tag.data(), dim_tag.size(), 0);
+  // Gmsh's own kernel keeps a discrete point otherwise, and makes it again when it synchronizes.
+  library().call("gmshModelGeoRemove", dim_tag.data(), dim_tag.size(), 0);
 }
 
 std::vector<Entity> physical_groups() {

@@ -11,6 +11,7 @@
 #include "model_reader.h"
 #include "number_text.h"
 #include "ordered_mesher.h"
+#include "remesh.h"
 #include "size_function_text.h"
 
 namespace meshgrow {
@@ -173,7 +174,8 @@ void ModelField::read_all(bool wait_for_meshes) {
   for (const std::size_t function : all) {
     const std::vector<Entity> unmeshed = unmeshed_sources(function);
     if (wait_for_meshes && !strict_ && !unmeshed.empty() &&
-        highest(unmeshed) < highest(field_.functions()[function].attachments)) {
+        std::min_element(unmeshed.begin(), unmeshed.end())->dim <
+            highest(field_.functions()[function].attachments)) {
       late_[function] = read_meshed(function, NodeCoordinates());
     } else {
       report_unmeshed(function);
@@ -199,10 +201,14 @@ void ModelField::register_callback() {
   SizeCallback::check_free_for(model_);
   read_all(true);
   adapt_to_meshers();
-  answers_.set_reader([this](int dim) { read_late_sources(dim); },
-                      [](const Entity& curve) { return gmsh::has_elements(curve); });
+  set_reader();
   callback_.reset();
   callback_ = std::make_unique<SizeCallback>(answers_, model_);
+}
+
+void ModelField::set_reader() {
+  answers_.set_reader([this](int dim) { read_late_sources(dim); },
+                      [](const Entity& curve) { return gmsh::has_elements(curve); });
 }
 
 void ModelField::unregister_callback() {
@@ -260,7 +266,13 @@ void ModelField::adapt_to_meshers() {
 std::vector<MeshingPass> ModelField::plan(int dim) const {
   const CurrentModel current(model_);
   check_model();
-  return OrderedMesher::plan(field_, dim);
+  std::set<Entity> meshed;
+  for (const Entity& entity : field_.topology().entities()) {
+    if (gmsh::has_elements(entity)) {
+      meshed.insert(entity);
+    }
+  }
+  return OrderedMesher::plan(field_, std::move(meshed), dim);
 }
 
 void ModelField::generate(int dim, bool remesh) {
@@ -270,19 +282,26 @@ void ModelField::generate(int dim, bool remesh) {
   const CurrentModel current(model_);
   check_model();
   generating_ = true;
+  std::map<std::size_t, std::vector<FacetedSource>> late = std::move(late_);
   late_.clear();
   const bool was_registered = is_registered();
   unregister_callback();
   const auto register_again = [&] {
     generating_ = false;
     if (was_registered) {
+      late_ = std::move(late);
+      set_reader();
       callback_ = std::make_unique<SizeCallback>(answers_, model_);
     }
   };
   try {
     adapt_to_meshers();
+    OrderedMesher::check_options();
     if (remesh) {
-      OrderedMesher::clear_all_but_sources(field_);
+      // Before anything is cleared: are there passes that do it?
+      const std::set<Entity> kept = kept_when_meshing_again(field_);
+      OrderedMesher::plan(field_, kept, dim);
+      clear_all_but(kept, field_);
     }
     OrderedMesher(*this).generate(dim);
   } catch (...) {

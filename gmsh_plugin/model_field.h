@@ -45,8 +45,8 @@ class ModelField {
   void set_progress_listener(ProgressListener listener) { listener_ = std::move(listener); }
   void tell(const std::string& line) const;
 
-  /// A user's own sizes: the smaller one wins, everywhere in the model. None if empty. An exception
-  /// from them is thrown again at the end of the pass or of `generate`.
+  /// A user's own sizes: the smaller one wins, everywhere in the model. None if empty. What they
+  /// throw counts as no size.
   void combine(UserSizes sizes) { answers_.combine(std::move(sizes)); }
 
   /// Makes Gmsh's edges as long as asked for in the middle, by measured factors (calibration.h).
@@ -101,6 +101,7 @@ class ModelField {
   void read_all(bool wait_for_meshes);
 
   std::vector<Entity> unmeshed_sources(std::size_t function) const;
+  void set_reader();
   /// Calibrates for the meshers chosen in Gmsh, and warns of those that ask for no sizes.
   void adapt_to_meshers();
 

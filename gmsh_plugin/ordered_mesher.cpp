@@ -9,6 +9,7 @@
 #include "mapped_surface.h"
 #include "meshing_plan.h"
 #include "periodic_copies.h"
+#include "remesh.h"
 
 namespace meshgrow {
 
@@ -60,12 +61,15 @@ OrderedMesher::OrderedMesher(ModelField& model_field)
       adjuster_(field_.topology(), constraints_),
       masters_(copied_by_us(field_.topology(), constraints_)) {}
 
-void OrderedMesher::check_options() const {
+void OrderedMesher::check_options() {
   if (gmsh::option("Mesh.SubdivisionAlgorithm") != 0.0) {
     throw Error(
         "Mesh.SubdivisionAlgorithm would split the premeshed elements too: set it to 0 and "
         "call refine() after meshing.");
   }
+}
+
+void OrderedMesher::check_premeshed(const std::vector<MeshingPass>& passes) const {
   const std::optional<Entity> curved = premeshed_.any_of_higher_order();
   if (curved && gmsh::option("Mesh.ElementOrder") < 2.0) {
     gmsh::log(entity_name(*curved) +
@@ -73,15 +77,34 @@ void OrderedMesher::check_options() const {
                   "first order: set Mesh.ElementOrder to 2 for a conforming mesh.",
               "warning");
   }
-}
-
-std::vector<MeshingPass> OrderedMesher::plan(const SizeField& field, int dim) {
-  std::set<Entity> meshed;
-  for (const Entity& entity : field.topology().entities()) {
-    if (gmsh::has_elements(entity)) {
-      meshed.insert(entity);
+  const Topology& topology = field_.topology();
+  const bool curves_are_meshed = std::any_of(passes.begin(), passes.end(),
+                                             [](const MeshingPass& pass) { return pass.dim == 1; });
+  for (const Entity& surface : topology.entities(2)) {
+    if (!premeshed_.contains(surface)) {
+      continue;
+    }
+    for (const Entity& curve : topology.lower(surface)) {
+      if (curve.dim == 1 && !premeshed_.contains(curve) && !has_no_length(curve, topology)) {
+        throw Error(entity_name(surface) + " has a mesh, but " + entity_name(curve) +
+                    " on its boundary has none: mesh both beforehand, or neither.");
+      }
+    }
+    if (curves_are_meshed && structured_faces_.count(surface) > 0) {
+      for (const Entity& volume : constraints_.mapped_volumes) {
+        if (!premeshed_.contains(volume) && topology.closure({volume}).count(surface) > 0) {
+          throw Error(entity_name(volume) + " is mapped (transfinite) and its " +
+                      entity_name(surface) +
+                      " has a mesh, whose structure Gmsh forgets when it meshes curves: mesh all "
+                      "curves beforehand as well, or leave the surface unmeshed.");
+        }
+      }
     }
   }
+}
+
+std::vector<MeshingPass> OrderedMesher::plan(const SizeField& field, std::set<Entity> meshed,
+                                             int dim) {
   const MeshConstraints constraints = read_mesh_constraints(field.topology());
   const CurveAdjuster adjuster(field.topology(), constraints);
   return plan_meshing(
@@ -94,36 +117,16 @@ std::vector<MeshingPass> OrderedMesher::plan(int dim) const {
                       dim);
 }
 
-void OrderedMesher::clear_all_but_sources(const SizeField& field) {
-  const std::vector<Entity> all = field.topology().entities();
-  std::vector<Entity> sources;
-  for (const SizeFunction& function : field.functions()) {
-    if (function.kind == Kind::mesh) {
-      sources.insert(sources.end(), function.sources.begin(), function.sources.end());
-    }
-  }
-  for (const Entity& entity : all) {
-    // Without its mesh a discrete entity would be nothing.
-    if (gmsh::is_discrete(entity)) {
-      sources.push_back(entity);
-    }
-  }
-  const std::set<Entity> kept = field.topology().closure(sources);
-  for (auto entity = all.rbegin(); entity != all.rend(); ++entity) {
-    if (entity->dim > 0 && kept.count(*entity) == 0 && gmsh::has_elements(*entity)) {
-      gmsh::clear_mesh({*entity});
-    }
-  }
-}
-
 void OrderedMesher::generate(int dim) {
   check_options();
   std::vector<MeshingPass> passes = plan(dim);
+  check_premeshed(passes);
   state_.set_option("Mesh.MeshOnlyVisible", 1.0);
   state_.set_option("Mesh.MeshOnlyEmpty", 0.0);
   state_.set_option("Mesh.Renumber", 0.0);
   state_.set_option("Mesh.ElementOrder", 1.0);
   const std::set<Entity> premeshed = premeshed_.entities();
+  user_premeshed_ = premeshed;
   const SizeCallback callback(model_field_.answers_, model_field_.model());
   try {
     while (true) {
@@ -141,8 +144,12 @@ void OrderedMesher::generate(int dim) {
   } catch (...) {
     model_field_.answers_.clear_scales();
     model_field_.answers_.set_boundary(nullptr);
-    premeshed_.put_back_missing();
-    premeshed_.put_back_after_error();
+    try {
+      premeshed_.put_back_missing();
+      premeshed_.put_back_after_error();
+    } catch (...) {
+      // The first error is the one to tell.
+    }
     throw;
   }
 }
@@ -159,11 +166,7 @@ void OrderedMesher::start_again(const LeftEmpty& left, const std::set<Entity>& p
   }
   model_field_.tell("Starting again: Gmsh meshes " + entity_names(left.entities) +
                     " only along with what it is a copy of");
-  for (auto entity = all_.rbegin(); entity != all_.rend(); ++entity) {
-    if (entity->dim > 0 && premeshed.count(*entity) == 0 && gmsh::has_elements(*entity)) {
-      gmsh::clear_mesh({*entity});
-    }
-  }
+  clear_all_but(premeshed, field_);
   premeshed_.keep_only(premeshed);
   waiting_.clear();
   lost_faces_.clear();
@@ -206,9 +209,9 @@ void OrderedMesher::run(const std::vector<MeshingPass>& plan) {
 
 void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
   read_new_sources();
-  report_unmeshed_sources(pass.entities);
-  // A source may turn out to have no elements, and then its function does not act after all.
   const std::vector<Entity> open = without_copies(pass.entities);
+  report_unmeshed_sources(open);
+  // A source may turn out to have no elements, and then its function does not act after all.
   std::vector<Entity> attached;
   std::vector<Entity> others;
   std::partition_copy(open.begin(), open.end(), std::back_inserter(attached),
@@ -231,6 +234,9 @@ void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
                  [&pass](const Entity& entity) { return entity.dim == pass.dim; });
     mesh(entities, is_attached, name);
     const std::vector<Entity> meshed = take_meshed(entities, name);
+    if (pass.dim == 2) {
+      keep_split_curves(entities);
+    }
     if (pass.dim == 2 && curves_follow) {
       keep_from_curve_passes(meshed);
     }
@@ -282,20 +288,41 @@ std::vector<Entity> OrderedMesher::take_meshed(const std::vector<Entity>& entiti
   return meshed;
 }
 
-void OrderedMesher::keep_from_curve_passes(const std::vector<Entity>& surfaces) {
-  for (const Entity& surface : surfaces) {
-    // With its mesh Gmsh forgets the structure that a mapped volume needs. The curves determine the
-    // mesh, so that the same one comes out again.
-    if (structured_faces_.count(surface) > 0) {
-      lost_faces_.push_back(surface);
-    } else {
-      premeshed_.keep({surface});
+void OrderedMesher::keep_split_curves(const std::vector<Entity>& surfaces) {
+  // Where curves intersect each other in the plane of a surface, Gmsh splits their elements. Curves
+  // of this run may be split as long as nothing else stands on them.
+  const std::set<Entity> now(surfaces.begin(), surfaces.end());
+  std::set<Entity> below;
+  for (const Entity& entity : field_.topology().closure(surfaces)) {
+    if (entity.dim == 1 && user_premeshed_.count(entity) == 0) {
+      below.insert(entity);
     }
   }
+  for (const Entity& surface : field_.topology().entities(2)) {
+    if (now.count(surface) == 0 && gmsh::has_elements(surface)) {
+      for (const Entity& curve : field_.topology().lower(surface)) {
+        below.erase(curve);
+      }
+    }
+  }
+  mark_stale(premeshed_.keep_of_other_cells({below.begin(), below.end()}));
+}
+
+void OrderedMesher::keep_from_curve_passes(const std::vector<Entity>& surfaces) {
+  premeshed_.keep(surfaces);
+  std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(lost_faces_),
+               [this](const Entity& surface) { return structured_faces_.count(surface) > 0; });
 }
 
 void OrderedMesher::mesh_lost_faces() {
   if (!lost_faces_.empty()) {
+    // With its mesh Gmsh has forgotten the structure that a mapped volume needs. The curves
+    // determine the mesh, so that the same one comes out again.
+    std::set<Entity> others = premeshed_.entities();
+    for (const Entity& face : lost_faces_) {
+      others.erase(face);
+    }
+    premeshed_.keep_only(others);
     mesh(lost_faces_, true, "the structure of " + entity_names(lost_faces_, 3));
     lost_faces_.clear();
   }

@@ -29,12 +29,11 @@ class OrderedMesher {
   /// Up to dimension 1, 2 or 3. Throws Error naming entity and pass if Gmsh fails.
   void generate(int dim);
 
-  /// The passes that `generate` would make now.
-  static std::vector<MeshingPass> plan(const SizeField& field, int dim);
+  /// The passes that `generate` would make if these entities had a mesh. Of the current model.
+  static std::vector<MeshingPass> plan(const SizeField& field, std::set<Entity> meshed, int dim);
 
-  /// Takes away the mesh of all that is no source of a mesh size function; discrete entities, which
-  /// have nothing else, keep theirs.
-  static void clear_all_but_sources(const SizeField& field);
+  /// Throws Error if an option of Gmsh is set with which premeshed entities could not stay.
+  static void check_options();
 
  private:
   /// Entities without a mesh after a pass in which Gmsh told of no error.
@@ -54,11 +53,12 @@ class OrderedMesher {
   void remove_protection(const Entity& volume) const;
   void adjust_curves(const std::vector<Entity>& stage);
   void keep_from_curve_passes(const std::vector<Entity>& surfaces);
+  void keep_split_curves(const std::vector<Entity>& surfaces);
   void mesh_lost_faces();
   void read_new_sources();
   void mark_stale(const std::vector<Entity>& meshed);
   bool acts_effectively(const Entity& entity) const;
-  void check_options() const;
+  void check_premeshed(const std::vector<MeshingPass>& passes) const;
   void check_faces_stayed(const std::vector<Entity>& entities, const std::string& pass_name) const;
   [[noreturn]] void refuse_empty(const LeftEmpty& left) const;
   void report_unmeshed_sources(const std::vector<Entity>& entities);
@@ -71,6 +71,7 @@ class OrderedMesher {
   MeshConstraints constraints_;
   std::set<Entity> structured_faces_;  ///< mapped faces of mapped volumes
   CurveAdjuster adjuster_;
+  std::set<Entity> user_premeshed_;   ///< what had a mesh at the beginning
   std::map<Entity, Entity> masters_;  ///< of periodic entities
   std::set<Entity> companions_;       ///< found to be meshed by Gmsh only along with others
   std::set<Entity> waiting_;          ///< companions that were due and have no mesh yet

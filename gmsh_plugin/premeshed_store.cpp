@@ -18,6 +18,15 @@ void PremeshedStore::keep(const std::vector<Entity>& entities) {
   }
 }
 
+std::vector<Entity> PremeshedStore::keep_of_other_cells(const std::vector<Entity>& entities) {
+  std::vector<Entity> stored;
+  std::copy_if(entities.begin(), entities.end(), std::back_inserter(stored),
+               [this](const Entity& entity) { return contains(entity); });
+  const std::vector<Entity> others = of_other_cells(stored);
+  keep(others);
+  return others;
+}
+
 void PremeshedStore::keep_only(const std::set<Entity>& entities) {
   for (auto entry = meshes_.begin(); entry != meshes_.end();) {
     entry = entities.count(entry->first) > 0 ? std::next(entry) : meshes_.erase(entry);

@@ -34,6 +34,10 @@ class PremeshedStore {
   /// Copies the meshes of these entities as well.
   void keep(const std::vector<Entity>& entities);
 
+  /// Copies the meshes of those of these entities again whose elements are others now; returns
+  /// them.
+  std::vector<Entity> keep_of_other_cells(const std::vector<Entity>& entities);
+
   /// Forgets the copies of entities that are not among these.
   void keep_only(const std::set<Entity>& entities);
 

@@ -16,10 +16,16 @@ class Matcher {
   Matcher(const std::vector<OppositeSides>& sides, const std::map<Entity, CurveIntervals>& wanted)
       : sides_(sides), curves_(wanted) {
     for (const OppositeSides& pair : sides_) {
-      for (const std::vector<Entity>* side : {&pair.first, &pair.second}) {
+      for (const std::vector<Entity>* side : {&pair.first, &pair.second, &pair.instead}) {
         for (const Entity& curve : *side) {
           curves_.insert({curve, CurveIntervals()});
         }
+      }
+    }
+    for (OppositeSides& pair : sides_) {
+      if (!pair.instead.empty() && free_curves(pair.first).empty() &&
+          free_curves(pair.second).empty() && sum(pair.first) != sum(pair.second)) {
+        pair.second = pair.instead;
       }
     }
     for (auto& [curve, intervals] : curves_) {
@@ -183,7 +189,7 @@ class Matcher {
                 ": give its curves other numbers, or mesh it without mapping.");
   }
 
-  const std::vector<OppositeSides>& sides_;
+  std::vector<OppositeSides> sides_;
   std::size_t raises_ = 0;
   std::map<Entity, CurveIntervals> curves_;
   std::map<Entity, CurveIntervals> wanted_;

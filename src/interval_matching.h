@@ -14,6 +14,8 @@ struct OppositeSides {
   Entity surface;
   std::vector<Entity> first;
   std::vector<Entity> second;
+  /// Takes the place of `second` where both are fixed and that one does not fit; may be empty.
+  std::vector<Entity> instead = {};
 };
 
 /// How many intervals (line elements) a curve has or wants.

@@ -113,7 +113,9 @@ std::vector<OppositeSides> opposite_sides(const MappedSurface& mapped, const Top
     return {{mapped.surface, sides[0], sides[2]}, {mapped.surface, sides[1], sides[3]}};
   }
   if (sides.size() == 3) {
-    std::vector<OppositeSides> result{{mapped.surface, sides[0], sides[2]}};
+    // Gmsh takes the next corner where it was told none and the first does not do.
+    std::vector<OppositeSides> result{
+        {mapped.surface, sides[0], sides[2], mapped.corners.empty() ? sides[1] : Side()}};
     if (equal_triangles) {
       result.push_back({mapped.surface, sides[0], sides[1]});
     }

@@ -155,7 +155,8 @@ void SizeField::build_group(std::size_t index, Evaluator evaluator) {
     }
     GridOptions grid_options;
     grid_options.tolerance = options_.tolerance;
-    grid_options.threads = options_.threads;
+    // Threads cost more than they save on few facets, most of all where processors are busy.
+    grid_options.threads = built.tree->facets().size() < 2000 ? 1 : options_.threads;
     if (options_.progress) {
       const std::string what =
           "Background grid " + std::to_string(index + 1) + " of " + std::to_string(groups_.size()) +

@@ -96,6 +96,7 @@ class SizeField:
         entities keep theirs.
         """
         dim = operator.index(dim)
+        self._raised.raise_again()  # of a callback in Gmsh's own generate()
         with interrupts_kept(self._raised.keep):
             failed = lib.meshgrow_field_generate(self._handle, dim, bool(remesh))
         self._check(failed)
@@ -115,6 +116,7 @@ class SizeField:
         4.8, ``(dim, tag, x, y, z)``; None ends that. Gmsh keeps one callback only and does not tell
         it: give the one of your ``setSizeCallback`` here. What it raises is raised by ``generate``.
         """
+        self._raised.forget()  # what the callback before raised
         if sizes is None:
             check(lib.meshgrow_field_combine(self._handle, USER_SIZES(), None))
             self._user_sizes = None

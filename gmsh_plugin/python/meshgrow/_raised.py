@@ -19,6 +19,9 @@ class Raised:
         self.exception = self.exception or exception
         self.stops = True
 
+    def forget(self):
+        self.exception, self.stops = None, False
+
     def raise_again(self):
         exception, self.exception, self.stops = self.exception, None, False
         if exception is not None:
@@ -44,7 +47,7 @@ class Raised:
             if self.exception is not None:
                 return -1.0
             try:
-                return call(dim, tag, x, y, z, lc)
+                return float(call(dim, tag, x, y, z, lc))
             except BaseException as raised:  # KeyboardInterrupt as well
                 self.keep(raised)
                 return -1.0
