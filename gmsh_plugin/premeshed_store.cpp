@@ -188,11 +188,12 @@ void PremeshedStore::put_back_changed() const {
   const Misfits misfits = put_back();
   if (!misfits.deleted.empty()) {
     throw Error("Gmsh gave " + entity_names(misfits.changed) +
-                " other elements while it meshed what lies on them, as it does with extruded "
-                "layers of tetrahedra. They are put back, and the new mesh of " +
+                " other elements while it meshed what lies on them, as it does with curves that "
+                "intersect and with extruded layers of tetrahedra. They are put back, and the new "
+                "mesh of " +
                 entity_names(misfits.deleted) +
-                ", which does not fit them, is deleted: leave those faces unmeshed, or recombine "
-                "the layers.");
+                ", which does not fit them, is deleted: ask for smaller sizes on the curves, "
+                "recombine the layers, or leave those entities unmeshed.");
   }
 }
 
