@@ -386,6 +386,7 @@ void generate(int dim) {
   // meshing and returns.
   constexpr const char* abort_on_error = "General.AbortOnError";
   const double users = option(abort_on_error);
+  const std::string told_before = last_error();
   if (users > 1.0) {
     set_option(abort_on_error, 1.0);
   }
@@ -398,7 +399,11 @@ void generate(int dim) {
   set_option(abort_on_error, users);
   const std::string error = last_error();
   if (users > 0.0 && !error.empty()) {
-    throw Error("Gmsh: " + error);
+    throw Error("Gmsh: " + error +
+                (error == told_before
+                     ? " (as before this pass; if that error has left Gmsh locked, call "
+                       "gmsh.finalize() and gmsh.initialize())"
+                     : ""));
   }
 }
 

@@ -77,6 +77,19 @@ def test_a_run_after_a_failed_one_meshes():
     assert has_elements(model.face)
 
 
+def test_gmsh_locked_by_an_error_of_its_own_generate_is_told():
+    """An error that Gmsh throws leaves it locked: it then meshes nothing and says nothing."""
+    volume = models.box()
+    gmsh.model.mesh.setTransfiniteVolume(volume[1])
+    with pytest.raises(Exception):
+        gmsh.model.mesh.generate(3)
+    model = models.square()
+    field = meshgrow.SizeField()
+    field.add_fixed([model.face], [model.face], 0.2, 1.2, 0.2)
+    with pytest.raises(meshgrow.Error, match="locked.*finalize"):
+        field.generate(2)
+
+
 def test_failing_pass_over_surfaces_is_named_and_what_was_meshed_is_kept():
     """Gmsh maps no ring."""
     models.start("square and ring")

@@ -214,6 +214,51 @@ def test_copy_of_a_premeshed_periodic_surface_is_made_to_match_it():
     assert_conforming(volume)
 
 
+def test_copy_of_a_premeshed_face_turned_about_an_axis():
+    """A sector of a ring, one cut of which is the other, turned by 60 degrees."""
+    models.start("sector")
+    occ = gmsh.model.occ
+    profile = (2, occ.addRectangle(1, 0, 0, 1, 1))
+    occ.rotate([profile], 0, 0, 0, 1, 0, 0, np.pi / 2)
+    made = occ.revolve([profile], 0, 0, 0, 0, 0, 1, np.pi / 3)
+    occ.synchronize()
+    volume = next(e for e in made if e[0] == 3)
+    cuts = [f for f in gmsh.model.getEntities(2) if gmsh.model.getType(*f) == "Plane"
+            and abs(occ.getCenterOfMass(*f)[2] - 0.5) < 1e-6]
+    master, copy = sorted(cuts, key=lambda f: occ.getCenterOfMass(*f)[1])
+    c, s = np.cos(np.pi / 3), np.sin(np.pi / 3)
+    gmsh.model.mesh.setPeriodic(2, [copy[1]], [master[1]],
+                                [c, -s, 0, 0, s, c, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+    premesh([master], lambda x, y, z: 0.1 + 0.1 * z)
+    before = snapshots(closure([master]))
+    grow([master], [volume])
+    assert snapshots(before) == before
+    assert element_count(copy) == element_count(master)
+    tag, pairs = node_pairs(copy)
+    positions = node_positions()
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    assert tag == master[1] and pairs
+    for node, other in pairs.items():
+        assert positions[node] == pytest.approx(turn @ positions[other], abs=1e-9)
+    assert_conforming(volume)
+
+
+def test_a_chain_of_copies_passes_the_mesh_on():
+    models.start("chain of squares")
+    occ = gmsh.model.occ
+    squares = [(2, occ.addRectangle(x, 0, 0, 1, 1)) for x in range(3)]
+    occ.fragment(squares[:1], squares[1:])
+    occ.synchronize()
+    across = sorted((e for e in gmsh.model.getEntities(1)
+                     if abs(occ.getCenterOfMass(*e)[1] - 0.5) < 1e-6),
+                    key=lambda e: occ.getCenterOfMass(*e)[0])
+    for master, copy in zip(across, across[1:]):
+        gmsh.model.mesh.setPeriodic(1, [copy[1]], [master[1]], SHIFT)
+    grow_fixed(across[:1], gmsh.model.getEntities(2), 0.05, 2)
+    assert [element_count(e) for e in across] == [20] * 4
+    assert_conforming_surfaces(*gmsh.model.getEntities(2))
+
+
 def test_periodic_curves_are_meshed_as_copies_beside_a_premeshed_curve():
     model = models.square()
     gmsh.model.mesh.setPeriodic(1, [model.right[1]], [model.left[1]], SHIFT)
