@@ -468,11 +468,10 @@ bool is_inside(const Entity& surface, double u, double v) {
 }
 
 void set_size_callback(SizeCallback48 until_48, SizeCallback49 since_49, void* data) {
-  const Version version = require_gmsh();
-  if (std::make_pair(version.major, version.minor) >= std::make_pair(4, 9)) {
-    library().call("gmshModelMeshSetSizeCallback", since_49, data);
-  } else {
+  if (is_4_8()) {
     library().call("gmshModelMeshSetSizeCallback", until_48, data);
+  } else {
+    library().call("gmshModelMeshSetSizeCallback", since_49, data);
   }
 }
 

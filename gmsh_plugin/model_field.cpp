@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <optional>
 
 #include "error.h"
 #include "geometry_sampler.h"
@@ -171,12 +172,16 @@ void ModelField::read_all(bool wait_for_meshes) {
   read_sources(all);
   reported_.clear();
   late_.clear();
+  std::optional<NodeCoordinates> nodes;
   for (const std::size_t function : all) {
     const std::vector<Entity> unmeshed = unmeshed_sources(function);
     if (wait_for_meshes && !strict_ && !unmeshed.empty() &&
         std::min_element(unmeshed.begin(), unmeshed.end())->dim <
             highest(field_.functions()[function].attachments)) {
-      late_[function] = read_meshed(function, NodeCoordinates());
+      if (!nodes) {
+        nodes.emplace();
+      }
+      late_[function] = read_meshed(function, *nodes);
     } else {
       report_unmeshed(function);
     }

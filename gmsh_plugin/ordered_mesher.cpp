@@ -118,15 +118,13 @@ std::vector<MeshingPass> OrderedMesher::plan(int dim) const {
 }
 
 void OrderedMesher::generate(int dim) {
-  check_options();
   std::vector<MeshingPass> passes = plan(dim);
   check_premeshed(passes);
   state_.set_option("Mesh.MeshOnlyVisible", 1.0);
   state_.set_option("Mesh.MeshOnlyEmpty", 0.0);
   state_.set_option("Mesh.Renumber", 0.0);
   state_.set_option("Mesh.ElementOrder", 1.0);
-  const std::set<Entity> premeshed = premeshed_.entities();
-  user_premeshed_ = premeshed;
+  user_premeshed_ = premeshed_.entities();
   const SizeCallback callback(model_field_.answers_, model_field_.model());
   try {
     while (true) {
@@ -134,7 +132,7 @@ void OrderedMesher::generate(int dim) {
         run(passes);
         break;
       } catch (const LeftEmpty& left) {
-        start_again(left, premeshed);
+        start_again(left);
         passes = plan(dim);
       }
     }
@@ -154,7 +152,7 @@ void OrderedMesher::generate(int dim) {
   }
 }
 
-void OrderedMesher::start_again(const LeftEmpty& left, const std::set<Entity>& premeshed) {
+void OrderedMesher::start_again(const LeftEmpty& left) {
   // Gmsh makes extruded layers and other copies only in the pass that meshes what they come from,
   // and tells nobody what that is. So these go along with every pass from the first possible on.
   bool any_new = false;
@@ -166,8 +164,8 @@ void OrderedMesher::start_again(const LeftEmpty& left, const std::set<Entity>& p
   }
   model_field_.tell("Starting again: Gmsh meshes " + entity_names(left.entities) +
                     " only along with what it is a copy of");
-  clear_all_but(premeshed, field_);
-  premeshed_.keep_only(premeshed);
+  clear_all_but(user_premeshed_, field_);
+  premeshed_.keep_only(user_premeshed_);
   waiting_.clear();
   lost_faces_.clear();
 }

@@ -43,7 +43,7 @@ class OrderedMesher {
   };
   std::vector<MeshingPass> plan(int dim) const;
   void run(const std::vector<MeshingPass>& plan);
-  void start_again(const LeftEmpty& left, const std::set<Entity>& premeshed);
+  void start_again(const LeftEmpty& left);
   void run_pass(const MeshingPass& pass, bool curves_follow);
   std::vector<Entity> without_copies(const std::vector<Entity>& entities);
   std::vector<Entity> take_meshed(const std::vector<Entity>& entities,

@@ -1,6 +1,7 @@
 #include "remesh.h"
 
 #include "gmsh_api.h"
+#include "meshing_plan.h"
 #include "periodic_copies.h"
 
 namespace meshgrow {
@@ -18,19 +19,7 @@ std::set<Entity> kept_when_meshing_again(const SizeField& field) {
       sources.push_back(entity);
     }
   }
-  const std::map<Entity, Entity> masters = periodic_masters(topology);
-  std::set<Entity> kept = topology.closure(sources);
-  for (std::size_t before = 0; before != kept.size();) {
-    before = kept.size();
-    std::vector<Entity> more(kept.begin(), kept.end());
-    for (const Entity& entity : kept) {
-      const auto master = masters.find(entity);
-      if (master != masters.end()) {
-        more.push_back(master->second);
-      }
-    }
-    kept = topology.closure(more);
-  }
+  std::set<Entity> kept = closure_with_masters(sources, topology, periodic_masters(topology));
   for (auto entity = kept.begin(); entity != kept.end();) {
     entity = gmsh::has_elements(*entity) ? std::next(entity) : kept.erase(entity);
   }

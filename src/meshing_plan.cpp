@@ -65,7 +65,7 @@ class Planner {
     }
     std::vector<std::set<Entity>> own;
     for (const SizeFunction& function : functions()) {
-      own.push_back(with_masters(task_.topology.closure(function.sources)));
+      own.push_back(closure_with_masters(function.sources, task_.topology, task_.masters));
     }
     for (auto& [entity, waits] : waits_) {
       for (const Entity& lower : task_.topology.lower(entity)) {
@@ -95,22 +95,6 @@ class Planner {
         }
       }
     }
-  }
-
-  /// With the masters of periodic copies among them, and all below those.
-  std::set<Entity> with_masters(std::set<Entity> entities) const {
-    for (std::size_t before = 0; before != entities.size();) {
-      before = entities.size();
-      std::vector<Entity> all(entities.begin(), entities.end());
-      for (const Entity& entity : entities) {
-        const auto master = task_.masters.find(entity);
-        if (master != task_.masters.end()) {
-          all.push_back(master->second);
-        }
-      }
-      entities = task_.topology.closure(all);
-    }
-    return entities;
   }
 
   /// All that an entity waits for, directly or not.
@@ -324,6 +308,24 @@ class Planner {
 };
 
 }  // namespace
+
+std::set<Entity> closure_with_masters(std::vector<Entity> entities, const Topology& topology,
+                                      const std::map<Entity, Entity>& masters) {
+  std::set<Entity> result = topology.closure(entities);
+  while (true) {
+    for (const Entity& entity : result) {
+      const auto master = masters.find(entity);
+      if (master != masters.end()) {
+        entities.push_back(master->second);
+      }
+    }
+    std::set<Entity> wider = topology.closure(entities);
+    if (wider.size() == result.size()) {
+      return result;
+    }
+    result = std::move(wider);
+  }
+}
 
 std::vector<MeshingPass> plan_meshing(const MeshingTask& task, int dim) {
   if (dim < 1 || dim > 3) {

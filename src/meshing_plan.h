@@ -38,6 +38,11 @@ struct MeshingTask {
   std::set<Entity> companions;
 };
 
+/// The closure of these entities together with the masters of all periodic copies in it, and the
+/// closures of those.
+std::set<Entity> closure_with_masters(std::vector<Entity> entities, const Topology& topology,
+                                      const std::map<Entity, Entity>& masters);
+
 /// Orders everything up to dimension `dim` that has no mesh into passes (paper, sections 1, 5.1 and
 /// 5.2): an entity comes after its boundary and what is embedded in it, and after all sources of
 /// the mesh size functions that act on it. The sources of one function, with all below them, do not
