@@ -1,6 +1,7 @@
 #include "facet.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace meshgrow {
 
@@ -53,6 +54,32 @@ Vec3 closest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
   return closest_on_sides(a, b, c, p);
 }
 
+/// A point relative to the origin of a ray, projected along the ray onto a coordinate plane (Woop,
+/// Benthin, Wald: Watertight ray/triangle intersection, JCGT 2013). All triangles at a corner see
+/// it in the same place, to the bit.
+struct SeenAlong {
+  double x;
+  double y;
+  double depth;  ///< distance along the ray
+
+  SeenAlong(const Vec3& p, const Vec3& direction) {
+    int axis = 0;
+    direction.cwiseAbs().maxCoeff(&axis);
+    depth = p[axis] / direction[axis];
+    x = p[(axis + 1) % 3] - depth * direction[(axis + 1) % 3];
+    y = p[(axis + 2) % 3] - depth * direction[(axis + 2) % 3];
+  }
+};
+
+/// Twice the area that two points span with the ray. Its sign is right or it is 0, as the rounding
+/// of products keeps their order, whatever the compiler makes of their difference: so no ray slips
+/// between triangles that share a side or a corner.
+double turn(const SeenAlong& a, const SeenAlong& b) {
+  const double forward = a.x * b.y;
+  const double backward = a.y * b.x;
+  return forward == backward ? 0.0 : forward - backward;
+}
+
 }  // namespace
 
 Box Facet::box() const {
@@ -84,5 +111,27 @@ Vec3 closest_point(const Facet& facet, const Vec3& p) {
 }
 
 double distance(const Facet& facet, const Vec3& p) { return (closest_point(facet, p) - p).norm(); }
+
+double ray_distance(const Facet& facet, const Vec3& origin, const Vec3& direction) {
+  constexpr double miss = std::numeric_limits<double>::infinity();
+  if (facet.corner_count != 3) {
+    return miss;
+  }
+  const SeenAlong a(facet.corners[0] - origin, direction);
+  const SeenAlong b(facet.corners[1] - origin, direction);
+  const SeenAlong c(facet.corners[2] - origin, direction);
+  const double u = turn(c, b);
+  const double v = turn(a, c);
+  const double w = turn(b, a);
+  if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) {
+    return miss;
+  }
+  const double sum = u + v + w;
+  if (sum == 0.0) {
+    return miss;
+  }
+  const double distance = (u * a.depth + v * b.depth + w * c.depth) / sum;
+  return distance >= 0.0 ? distance : miss;
+}
 
 }  // namespace meshgrow

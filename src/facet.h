@@ -32,6 +32,11 @@ Vec3 closest_point(const Facet& facet, const Vec3& p);
 /// Distance from p to the facet (clamped projection), model units. Thread-safe.
 double distance(const Facet& facet, const Vec3& p);
 
+/// Distance along the ray from `origin` in the unit vector `direction` to the triangle, borders
+/// included; infinite where it misses, runs within the triangle's plane, or for other facets.
+/// Thread-safe.
+double ray_distance(const Facet& facet, const Vec3& origin, const Vec3& direction);
+
 }  // namespace meshgrow
 
 #endif

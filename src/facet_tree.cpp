@@ -1,8 +1,8 @@
 #include "facet_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "error.h"
 
@@ -12,33 +12,44 @@ namespace {
 
 constexpr std::uint32_t facets_per_leaf = 4;
 
-/// Median splits halve the facets, so 2^32 facets need 32 levels; one entry a level stays behind.
-constexpr std::size_t stack_size = 64;
-
 }  // namespace
 
-FacetTree::FacetTree(SizedFacets facets) : facets_(std::move(facets)) {
-  if (facets_.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
+FacetTree::FacetTree(SizedFacets facets) {
+  if (facets.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
     throw Error("A size function has more than 2 billion facets: split its sources.");
   }
-  if (!facets_.empty()) {
-    nodes_.reserve(facets_.size());
-    nodes_.emplace_back();
-    build(0, 0, static_cast<std::uint32_t>(facets_.size()));
-    nodes_.shrink_to_fit();
+  if (facets.empty()) {
+    return;
+  }
+  std::vector<Vec3> centroids;
+  centroids.reserve(facets.size());
+  for (const SizedFacet& facet : facets) {
+    centroids.push_back(facet.facet.centroid());
+  }
+  original_index_.resize(facets.size());
+  std::iota(original_index_.begin(), original_index_.end(), 0U);
+  nodes_.reserve(facets.size());
+  nodes_.emplace_back();
+  build(0, 0, static_cast<std::uint32_t>(facets.size()), facets, centroids);
+  nodes_.shrink_to_fit();
+  facets_.reserve(facets.size());
+  for (const std::uint32_t original : original_index_) {
+    facets_.push_back(facets[original]);
   }
 }
 
-void FacetTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t count) {
+void FacetTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t count,
+                      const SizedFacets& facets, const std::vector<Vec3>& centroids) {
   Box box;
-  Box centroids;
+  Box centroid_box;
   double min_start_size = infinity;
   double min_slope = infinity;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    box.extend(facets_[i].facet.box());
-    centroids.extend(facets_[i].facet.centroid());
-    min_start_size = std::min(min_start_size, facets_[i].start_size);
-    min_slope = std::min(min_slope, facets_[i].slope);
+  const auto begin = original_index_.begin() + first;
+  for (auto i = begin; i != begin + count; ++i) {
+    box.extend(facets[*i].facet.box());
+    centroid_box.extend(centroids[*i]);
+    min_start_size = std::min(min_start_size, facets[*i].start_size);
+    min_slope = std::min(min_slope, facets[*i].slope);
   }
   if (count <= facets_per_leaf) {
     nodes_[node] = {box, min_start_size, min_slope, first, count};
@@ -48,54 +59,33 @@ void FacetTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t cou
   nodes_[node] = {box, min_start_size, min_slope, children, 0};
   nodes_.resize(nodes_.size() + 2);
   int axis = 0;
-  centroids.sizes().maxCoeff(&axis);
+  centroid_box.sizes().maxCoeff(&axis);
   const std::uint32_t half = count / 2;
-  const auto begin = facets_.begin() + first;
   std::nth_element(begin, begin + half, begin + count,
-                   [axis](const SizedFacet& a, const SizedFacet& b) {
-                     return a.facet.centroid()[axis] < b.facet.centroid()[axis];
+                   [axis, &centroids](std::uint32_t a, std::uint32_t b) {
+                     return centroids[a][axis] < centroids[b][axis];
                    });
-  build(children, first, half);
-  build(children + 1, first + half, count - half);
+  build(children, first, half, facets, centroids);
+  build(children + 1, first + half, count - half, facets, centroids);
 }
 
-template <typename LowerBound, typename FacetValue>
-FacetTree::Closest FacetTree::best_first(double upper_bound, LowerBound lower_bound,
-                                         FacetValue value) const {
-  struct Entry {
-    double bound;
-    std::uint32_t node;
-  };
-  Closest best{facets_.size(), upper_bound};
-  if (nodes_.empty()) {
-    return best;
-  }
-  std::array<Entry, stack_size> stack;
-  std::size_t top = 0;
-  stack[top++] = {lower_bound(nodes_[0]), 0};
-  while (top > 0) {
-    const Entry entry = stack[--top];
-    if (!(entry.bound < best.distance)) {
+double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inverse_direction) {
+  double enter = 0.0;
+  double leave = infinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(inverse_direction[axis])) {
+      if (origin[axis] < box.min()[axis] || origin[axis] > box.max()[axis]) {
+        return infinity;
+      }
       continue;
     }
-    const Node& node = nodes_[entry.node];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double candidate = value(facets_[i]);
-      if (candidate < best.distance) {
-        best = {i, candidate};
-      }
-    }
-    if (node.count == 0) {
-      Entry near{lower_bound(nodes_[node.first]), node.first};
-      Entry far{lower_bound(nodes_[node.first + 1]), node.first + 1};
-      if (far.bound < near.bound) {
-        std::swap(near, far);
-      }
-      stack[top++] = far;
-      stack[top++] = near;
-    }
+    const double a = (box.min()[axis] - origin[axis]) * inverse_direction[axis];
+    const double b = (box.max()[axis] - origin[axis]) * inverse_direction[axis];
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
   }
-  return best;
+  // A little tolerance, or a ray through the rim of a flat box would be lost by rounding.
+  return enter <= leave * (1.0 + 1e-12) ? enter : infinity;
 }
 
 double FacetTree::size(const Vec3& p, double upper_bound) const {
@@ -104,18 +94,17 @@ double FacetTree::size(const Vec3& p, double upper_bound) const {
              [&p](const Node& node) {
                return node.min_start_size + node.min_slope * node.box.exteriorDistance(p);
              },
-             [&p](const SizedFacet& facet) { return facet.size_at(p); })
+             [&](std::uint32_t i) { return facets_[i].size_at(p); })
       .distance;
 }
 
 FacetTree::Closest FacetTree::closest_facet(const Vec3& p) const {
-  return best_first(
-      infinity, [&p](const Node& node) { return node.box.exteriorDistance(p); },
-      [&p](const SizedFacet& facet) { return distance(facet.facet, p); });
+  return closest_facet(p, infinity, [&](std::uint32_t i) { return distance(facets_[i].facet, p); });
 }
 
 std::size_t FacetTree::memory_bytes() const {
-  return nodes_.capacity() * sizeof(Node) + facets_.capacity() * sizeof(SizedFacet);
+  return nodes_.capacity() * sizeof(Node) + facets_.capacity() * sizeof(SizedFacet) +
+         original_index_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace meshgrow

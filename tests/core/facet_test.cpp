@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -261,6 +262,106 @@ TEST(Facet, BoxAndCentroidTakeTheFacetsOwnCornersOnly) {
   EXPECT_EQ(triangle.box().min(), Vec3(0, -3, 0));
   EXPECT_EQ(triangle.box().max(), Vec3(3, 0, 6));
   EXPECT_EQ(triangle.centroid(), Vec3(1, -1, 2));
+}
+
+// ==== Rays
+
+TEST(Facet, RayDistanceEqualsTheReference) {
+  // The volumes that the ray spans with each side, in extended precision.
+  constexpr unsigned seed = 7;
+  Random random(seed);
+  int hits = 0;
+  int misses = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double scale = log_uniform(random, 1e-6, 1e6);
+    const Facet facet =
+        Facet::triangle(test::random_in_ball(random, scale), test::random_in_ball(random, scale),
+                        test::random_in_ball(random, scale));
+    const Vec3 origin = test::random_in_ball(random, 2.0 * scale);
+    const Vec3 aim =
+        test::random_on_facet(random, facet) + test::random_in_ball(random, 0.3 * scale);
+    const Vec3 direction = (aim - origin).normalized();
+    const test::WideVec3 d = direction.cast<long double>();
+    const test::WideVec3 o = origin.cast<long double>();
+    const test::WideVec3 a = facet.corners[0].cast<long double>() - o;
+    const test::WideVec3 b = facet.corners[1].cast<long double>() - o;
+    const test::WideVec3 c = facet.corners[2].cast<long double>() - o;
+    const long double u = d.dot(c.cross(b));
+    const long double v = d.dot(a.cross(c));
+    const long double w = d.dot(b.cross(a));
+    const long double t = a.dot((b - a).cross(c - a)) / d.dot((b - a).cross(c - a));
+    // So close to the border, in front or behind, that rounding may decide.
+    const long double border = 1e-12L * scale * scale;
+    if (std::min({std::abs(u), std::abs(v), std::abs(w)}) < border || std::abs(t) < 1e-9 * scale ||
+        std::abs(u + v + w) < 1e-6 * scale * scale) {
+      continue;
+    }
+    const bool inside = (u > 0) == (v > 0) && (v > 0) == (w > 0) && t > 0;
+    const double distance = ray_distance(facet, origin, direction);
+    ASSERT_EQ(std::isfinite(distance), inside) << "round " << i << ", seed " << seed;
+    if (inside) {
+      ASSERT_NEAR(distance, static_cast<double>(t), 1e-9 * scale)
+          << "round " << i << ", seed " << seed;
+    }
+    (inside ? hits : misses) += 1;
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_GT(misses, 3000);
+}
+
+TEST(Facet, RayMeetsBordersAndBothSides) {
+  const Facet facet = Facet::triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  const Vec3 up(0, 0, 1);
+  EXPECT_EQ(ray_distance(facet, {1, 1, -3}, up), 3.0);
+  EXPECT_EQ(ray_distance(facet, {1, 1, 3}, -up), 3.0);
+  EXPECT_EQ(ray_distance(facet, {1, 1, 0}, up), 0.0);
+  EXPECT_EQ(ray_distance(facet, {2, 0, -3}, up), 3.0);  // on a side
+  EXPECT_EQ(ray_distance(facet, {2, 2, -3}, up), 3.0);
+  EXPECT_EQ(ray_distance(facet, {0, 4, -3}, up), 3.0);  // on a corner
+}
+
+TEST(Facet, RayMisses) {
+  constexpr double miss = std::numeric_limits<double>::infinity();
+  const Facet facet = Facet::triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  const Vec3 up(0, 0, 1);
+  EXPECT_EQ(ray_distance(facet, {1, 1, 3}, up), miss);  // behind
+  EXPECT_EQ(ray_distance(facet, {3, 3, -3}, up), miss);
+  EXPECT_EQ(ray_distance(facet, {-1, 1, 0}, Vec3(1, 0, 0)), miss);  // within the plane
+  EXPECT_EQ(ray_distance(facet, {-1, 1, 1}, Vec3(1, 0, 0)), miss);
+  EXPECT_EQ(ray_distance(Facet::segment({0, 0, 0}, {1, 0, 0}), {0, 0, -1}, up), miss);
+  EXPECT_EQ(ray_distance(Facet::point({0, 0, 0}), {0, 0, -1}, up), miss);
+  EXPECT_EQ(ray_distance(Facet::triangle({0, 0, 0}, {0, 0, 0}, {1, 0, 0}), {0, 0, -1}, up), miss);
+}
+
+TEST(Facet, NoRaySlipsThroughSharedSidesAndCorners) {
+  // Fans about a corner: whatever is aimed at the corner or at a spoke meets one of its triangles.
+  constexpr unsigned seed = 8;
+  Random random(seed);
+  for (int round = 0; round < 20000; ++round) {
+    const Vec3 offset = test::random_in_ball(random, round % 3 == 0 ? 0.0 : 100.0);
+    const Vec3 corner = offset + test::random_in_ball(random, 0.1);
+    const int spokes = 4 + static_cast<int>(test::random_index(random, 4));
+    std::vector<Vec3> rim;
+    const Eigen::AngleAxisd turn(uniform(random, 0.0, 3.0), test::random_direction(random));
+    for (int i = 0; i < spokes; ++i) {
+      const double angle = 2.0 * 3.14159265358979 * (i + uniform(random, -0.2, 0.2)) / spokes;
+      rim.push_back(offset +
+                    turn * Vec3(std::cos(angle), std::sin(angle), uniform(random, -0.1, 0.1)));
+    }
+    const Vec3 origin = offset + turn * Vec3(uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1),
+                                             uniform(random, 0.5, 3.0));
+    const Vec3 on_spoke = corner + uniform(random, 0.0, 0.9) * (rim[0] - corner);
+    for (const Vec3& aim : {corner, on_spoke}) {
+      const Vec3 direction = (aim - origin).normalized();
+      bool hit = false;
+      for (int i = 0; i < spokes; ++i) {
+        const Facet facet = i % 2 == 0 ? Facet::triangle(corner, rim[i], rim[(i + 1) % spokes])
+                                       : Facet::triangle(rim[i], corner, rim[(i + 1) % spokes]);
+        hit = hit || std::isfinite(ray_distance(facet, origin, direction));
+      }
+      ASSERT_TRUE(hit) << "round " << round << ", seed " << seed;
+    }
+  }
 }
 
 }  // namespace

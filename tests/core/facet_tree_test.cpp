@@ -165,6 +165,64 @@ TEST_P(FacetTreeOf, UpperBoundIsAnsweredWhereNothingIsBelowIt) {
   EXPECT_GT(below, 1000);
 }
 
+TEST_P(FacetTreeOf, ClosestAmongSomeFacetsEqualsBruteForce) {
+  constexpr unsigned seed = 550;
+  Random random(seed);
+  RandomFacets wanted;
+  wanted.mix = GetParam();
+  wanted.count = 300;
+  const FacetTree tree(test::random_facets(random, wanted));
+  const SizedFacets& facets = tree.facets();
+  const std::vector<double> largest_below = tree.node_values<double>(
+      [&](std::size_t i) { return facets[i].start_size; },
+      [](double& largest, double other) { largest = std::max(largest, other); });
+  int none = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p = test::random_query(random, facets, wanted.box);
+    const double smallest = test::log_uniform(random, 1e-6, 1.0);
+    const double within = test::log_uniform(random, 0.01, 10.0);
+    const auto accepts = [&](std::size_t k) { return facets[k].start_size >= smallest; };
+    double expected = within;
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      expected = accepts(k) ? std::min(expected, distance(facets[k].facet, p)) : expected;
+    }
+    const auto distance_to = [&](std::size_t k) {
+      return accepts(k) ? distance(facets[k].facet, p) : FacetTree::infinity;
+    };
+    const FacetTree::Closest closest = tree.closest_facet(p, within, distance_to);
+    ASSERT_NEAR(closest.distance, expected, 1e-12 * expected) << query_text(seed, i, p);
+    ASSERT_EQ(closest.facet == facets.size(), expected == within) << query_text(seed, i, p);
+    ASSERT_TRUE(expected == within || accepts(closest.facet)) << query_text(seed, i, p);
+    none += expected == within ? 1 : 0;
+    // By a bound of the caller's own.
+    const FacetTree::Closest by_nodes = tree.closest_facet(
+        within,
+        [&](std::size_t node, const Box& box) {
+          return largest_below[node] >= smallest ? 0.5 * box.exteriorDistance(p)
+                                                 : FacetTree::infinity;
+        },
+        distance_to);
+    ASSERT_NEAR(by_nodes.distance, expected, 1e-12 * expected) << query_text(seed, i, p);
+  }
+  EXPECT_GT(none, 100);
+  EXPECT_LT(none, 4900);
+}
+
+TEST_P(FacetTreeOf, OriginalIndexTellsWhereFacetsStood) {
+  Random random(560);
+  RandomFacets wanted;
+  wanted.mix = GetParam();
+  wanted.count = 333;
+  const SizedFacets before = test::random_facets(random, wanted);
+  const FacetTree tree(before);
+  std::set<std::size_t> seen;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    ASSERT_TRUE(tree.facets()[i] == before[tree.original_index(i)]);
+    seen.insert(tree.original_index(i));
+  }
+  EXPECT_EQ(seen.size(), before.size());
+}
+
 INSTANTIATE_TEST_SUITE_P(Mixes, FacetTreeOf,
                          testing::Values(FacetMix::points, FacetMix::segments, FacetMix::triangles,
                                          FacetMix::mixed, FacetMix::degenerate),
@@ -359,6 +417,159 @@ TEST(FacetTree, NeighboursInSpaceAreNeighboursInOrder) {
     gaps += (tree.facets()[i].facet.centroid() - tree.facets()[i - 1].facet.centroid()).norm();
   }
   EXPECT_LT(gaps, 10.0);  // in sorted order 1, shuffled about 1400
+}
+
+TEST(FacetTree, NodeValuesOfTheFirstNodeAreOfAllFacets) {
+  Random random(1050);
+  for (const std::size_t count : {1u, 4u, 5u, 777u}) {
+    RandomFacets wanted;
+    wanted.count = count;
+    const FacetTree tree(test::random_facets(random, wanted));
+    const auto counts = tree.node_values<std::size_t>(
+        [](std::size_t) { return 1; }, [](std::size_t& sum, std::size_t other) { sum += other; });
+    ASSERT_FALSE(counts.empty());
+    EXPECT_EQ(counts.front(), count);
+    EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 0u);
+  }
+}
+
+// ==== Rays
+
+/// Compares first_hit with all facets one by one; any facet at the same distance may be named.
+void compare_first_hit(const FacetTree& tree, const Vec3& origin, const Vec3& direction,
+                       double within, std::size_t modulus, const std::string& text) {
+  const SizedFacets& facets = tree.facets();
+  const auto accepts = [&](std::size_t i) { return tree.original_index(i) % modulus != 0; };
+  double expected = within;
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    if (accepts(i)) {
+      expected = std::min(expected, ray_distance(facets[i].facet, origin, direction));
+    }
+  }
+  const FacetTree::Closest hit = tree.first_hit(origin, direction, within, accepts);
+  ASSERT_EQ(hit.distance, expected) << text;
+  ASSERT_EQ(hit.facet == facets.size(), expected == within) << text;
+  if (hit.facet < facets.size()) {
+    ASSERT_TRUE(accepts(hit.facet)) << text;
+    ASSERT_EQ(ray_distance(facets[hit.facet].facet, origin, direction), expected) << text;
+  }
+}
+
+TEST(FacetTree, FirstHitEqualsBruteForce) {
+  for (const FacetMix mix : {FacetMix::triangles, FacetMix::mixed, FacetMix::degenerate}) {
+    constexpr unsigned seed = 1100;
+    Random random(seed);
+    RandomFacets wanted;
+    wanted.mix = mix;
+    wanted.count = 500;
+    const FacetTree tree(test::random_facets(random, wanted));
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 origin = test::random_query(random, tree.facets(), wanted.box);
+      Vec3 direction = test::random_direction(random);
+      if (i % 3 == 0) {
+        const std::size_t at = test::random_index(random, tree.facets().size());
+        direction =
+            (test::random_on_facet(random, tree.facets()[at].facet) - origin).stableNormalized();
+      } else if (i % 3 == 1) {
+        direction = Vec3::Zero();
+        direction[i % 9 / 3] = i % 2 == 0 ? 1.0 : -1.0;
+      }
+      if (direction.norm() > 0.5) {
+        const double within =
+            i % 4 == 0 ? FacetTree::infinity : test::log_uniform(random, 0.1, 10.0);
+        compare_first_hit(tree, origin, direction, within, 2 + i % 5, query_text(seed, i, origin));
+      }
+    }
+  }
+}
+
+/// The surface of the cube from −1 to 1 in n × n cells a side, each of two triangles.
+SizedFacets cube_surface(int n) {
+  SizedFacets facets;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto at = [&](int i, int j) {
+        Vec3 p;
+        p[axis] = side;
+        p[(axis + 1) % 3] = -1.0 + 2.0 * i / n;
+        p[(axis + 2) % 3] = -1.0 + 2.0 * j / n;
+        return p;
+      };
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+          facets.push_back({Facet::triangle(at(i, j), at(i + 1, j), at(i + 1, j + 1)), 1.0, 0.1});
+          facets.push_back({Facet::triangle(at(i, j), at(i + 1, j + 1), at(i, j + 1)), 1.0, 0.1});
+        }
+      }
+    }
+  }
+  return facets;
+}
+
+TEST(FacetTree, RaysAlongAxesAndBoxSidesHit) {
+  // From grid points, so that rays run along sides of boxes and through corners of triangles.
+  constexpr int n = 4;
+  const FacetTree tree(cube_surface(n));
+  const auto all = [](std::size_t) { return true; };
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const double sign : {-1.0, 1.0}) {
+          for (const double height : {0.0, 0.3, -1.0, 5.0}) {
+            Vec3 origin;
+            origin[axis] = -sign * height;
+            origin[(axis + 1) % 3] = -1.0 + 2.0 * i / n;
+            origin[(axis + 2) % 3] = -1.0 + 2.0 * j / n;
+            Vec3 direction = Vec3::Zero();
+            direction[axis] = sign;
+            const double expected = height == 5.0 ? 4.0 : height == -1.0 ? 0.0 : 1.0 + height;
+            const FacetTree::Closest hit =
+                tree.first_hit(origin, direction, FacetTree::infinity, all);
+            ASSERT_EQ(hit.distance, expected) << origin.transpose() << " axis " << axis;
+            compare_first_hit(tree, origin, direction, 10.0, 3, "grid");
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FacetTree, NoRaySlipsOutOfAClosedSurface) {
+  for (const double offset : {0.0, 1e3}) {
+    constexpr unsigned seed = 1200;
+    Random random(seed);
+    const Vec3 centre = offset * test::random_direction(random);
+    const Eigen::AngleAxisd turn(1.0, test::random_direction(random));
+    SizedFacets facets = cube_surface(6);
+    for (SizedFacet& facet : facets) {
+      for (Vec3& corner : facet.facet.corners) {
+        corner = centre + turn * corner.normalized();
+      }
+    }
+    const FacetTree tree(facets);
+    for (int i = 0; i < 30000; ++i) {
+      const Vec3 origin = centre + test::random_in_ball(random, 0.9);
+      const Facet& facet = facets[test::random_index(random, facets.size())].facet;
+      const Vec3& a = facet.corners[0];
+      const Vec3& b = facet.corners[1 + i % 2];
+      const double s = i % 3 == 0 ? 0.0 : i % 3 == 1 ? 0.5 : test::uniform(random, 0.0, 1.0);
+      const Vec3 aim = a + s * (b - a);
+      const FacetTree::Closest hit =
+          tree.first_hit(origin, (aim - origin).normalized(), FacetTree::infinity,
+                         [](std::size_t) { return true; });
+      ASSERT_NEAR(hit.distance, (aim - origin).norm(), 1e-9) << query_text(seed, i, origin);
+    }
+  }
+}
+
+TEST(FacetTree, EmptyTreeAnswersEveryQuery) {
+  const FacetTree tree({});
+  const auto all = [](std::size_t) { return true; };
+  const auto none = [](std::size_t) { return FacetTree::infinity; };
+  EXPECT_EQ(tree.first_hit({0, 0, 0}, {0, 0, 1}, 5.0, all).distance, 5.0);
+  EXPECT_EQ(tree.closest_facet({0, 0, 0}, 5.0, none).distance, 5.0);
+  const auto value = [](std::size_t) { return 1; };
+  EXPECT_TRUE(tree.node_values<int>(value, [](int& sum, int other) { sum += other; }).empty());
 }
 
 }  // namespace
