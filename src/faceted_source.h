@@ -17,6 +17,10 @@ struct FacetedSource {
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<std::array<Vec3, 3>> triangles;
   std::vector<std::array<Vec3, 4>> quads;  ///< corners in turn around the quad
+  /// Largest curvature (1 / model units) of the geometry at each segment and triangle, where it is
+  /// known: one each, NaN where not, or empty.
+  std::vector<double> segment_curvatures;
+  std::vector<double> triangle_curvatures;
 
   bool empty() const {
     return points.empty() && segments.empty() && triangles.empty() && quads.empty();

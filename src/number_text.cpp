@@ -1,9 +1,12 @@
 #include "number_text.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <locale>
 #include <sstream>
+#include <system_error>
 
 namespace meshgrow {
 
@@ -30,6 +33,12 @@ std::string shortest(double value, int digits) {
   text.imbue(std::locale::classic());
   text << std::setprecision(digits) << value;
   return text.str();
+}
+
+std::string exact_text(double value) {
+  std::array<char, 32> text;
+  const auto [end, problem] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return std::string(text.data(), problem == std::errc() ? end : text.data());
 }
 
 }  // namespace meshgrow

@@ -16,6 +16,9 @@ std::string rounded(double value, int decimals);
 /// The shortest text of so many digits at most: "0.1", "1e+22".
 std::string shortest(double value, int digits = 6);
 
+/// The shortest text that reads as exactly this number again.
+std::string exact_text(double value);
+
 }  // namespace meshgrow
 
 #endif

@@ -6,8 +6,10 @@
 
 #include "growth_law.h"
 #include "number_text.h"
+#include "start_sizes/curvature_start_sizes.h"
 #include "start_sizes/fixed_start_sizes.h"
 #include "start_sizes/mesh_start_sizes.h"
+#include "start_sizes/proximity_start_sizes.h"
 
 namespace meshgrow {
 
@@ -22,11 +24,13 @@ std::size_t SizeField::add(SizeFunction function) {
   validate(function, meshgrow::function_name(function, functions_.size()), topology_);
   functions_.push_back(std::move(function));
   facets_.emplace_back();
+  effective_.push_back(false);
   try {
     regroup();
   } catch (...) {
     functions_.pop_back();
     facets_.pop_back();
+    effective_.pop_back();
     throw;
   }
   return functions_.size() - 1;
@@ -37,7 +41,7 @@ void SizeField::regroup() {
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     std::vector<Entity> source_volumes;
     for (const Entity& source : functions_[i].sources) {
-      if (source.dim == 3) {
+      if (source.dim == 3 && functions_[i].kind == Kind::fixed) {
         source_volumes.push_back(source);
       }
     }
@@ -76,31 +80,53 @@ DroppedFacets SizeField::set_sources(std::size_t function,
                                      const std::vector<FacetedSource>& sources, double unit) {
   const SizeFunction& definition = functions_[function];
   const double slope = growth_slope(definition.growth_rate);
-  DroppedFacets dropped;
   SizedFacets facets;
+  DroppedFacets dropped;
   for (const FacetedSource& source : sources) {
-    const DroppedFacets more =
-        definition.kind == Kind::mesh
-            ? append_mesh_start_sizes(source, definition.quad_size, slope, facets)
-            : append_fixed_start_sizes(source, definition.start_size, slope, facets);
-    dropped.zero_size += more.zero_size;
-    dropped.not_finite += more.not_finite;
+    if (definition.kind == Kind::mesh) {
+      dropped += append_mesh_start_sizes(source, definition.quad_size, slope, facets);
+    } else if (definition.kind == Kind::fixed) {
+      dropped += append_fixed_start_sizes(source, definition.start_size, slope, facets);
+    } else {
+      dropped += append_curvature_start_sizes(
+          source, {definition.angle, definition.min_size, definition.size_limit}, slope, facets);
+    }
   }
   if (definition.kind == Kind::mesh) {
     for (SizedFacet& facet : facets) {
       facet.start_size /= unit;
     }
   }
-  if (facets == facets_[function]) {
-    return dropped;  // trees and grids are good as they are
+  set_facets(function, std::move(facets));
+  return dropped;
+}
+
+void SizeField::set_regions(std::size_t function, const std::vector<WalledRegion>& regions) {
+  const SizeFunction& definition = functions_[function];
+  const ProximityParameters parameters = {definition.cells_per_gap, definition.growth_rate,
+                                          definition.size_limit, definition.min_size,
+                                          options_.threads};
+  SizedFacets facets;
+  for (const WalledRegion& region : regions) {
+    append_proximity_start_sizes(region.walls, region.gaps.sources, parameters, facets);
+  }
+  set_facets(function, std::move(facets));
+}
+
+void SizeField::set_facets(std::size_t function, SizedFacets facets) {
+  const Kind kind = functions_[function].kind;
+  const bool needs_facets = kind == Kind::mesh || kind == Kind::fixed;
+  const bool effective = !needs_facets || !facets.empty();
+  if (facets == facets_[function] && effective == effective_[function]) {
+    return;  // trees and grids are good as they are
   }
   facets_[function] = std::move(facets);
+  effective_[function] = effective;
   for (Group& group : groups_) {
     for (const Action& action : group.actions) {
       group.changed = group.changed || action.function == function;
     }
   }
-  return dropped;
 }
 
 void SizeField::build(const std::vector<Entity>& entities) {
@@ -235,6 +261,16 @@ std::string SizeField::summary() const {
          << ", limit " << shortest(function.size_limit);
     if (function.kind == Kind::fixed) {
       text << ", size " << shortest(function.start_size);
+    } else if (function.kind == Kind::curvature) {
+      text << ", angle " << shortest(function.angle);
+    } else if (function.kind == Kind::proximity) {
+      text << ", " << shortest(function.cells_per_gap) << " cells per gap";
+    }
+    if (function.min_size > 0.0) {
+      text << ", min " << shortest(function.min_size);
+    }
+    if (is_effective(i)) {
+      text << ", " << grouped_digits(facets_[i].size()) << " facets";
     }
     text << (is_effective(i) ? "\n" : " (no effect: its sources have no mesh yet)\n");
   }

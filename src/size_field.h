@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "background_grid.h"
+#include "region_walls.h"
 #include "size_function.h"
 #include "topology.h"
 
@@ -27,6 +28,12 @@ struct FieldOptions {
   int threads = 0;  ///< that build grids; 0: OMP_NUM_THREADS, else all processors
   /// Called while a grid is built, from the building thread only: what is built, finished fraction.
   std::function<void(const std::string&, double)> progress;
+};
+
+/// The walls of a region in which a proximity size function measures gaps.
+struct WalledRegion {
+  GapRegion gaps;
+  std::vector<Wall> walls;
 };
 
 /// The size field of a model: all size functions, the groups of entities on which they act, a tree
@@ -53,14 +60,20 @@ class SizeField {
   /// "Mesh size function 1", as messages name it.
   std::string function_name(std::size_t function) const;
 
-  /// Gives a function the pieces of its sources and computes their start sizes. Without any, the
-  /// function has no effect. Takes effect with the next `build`. Start sizes that are read from a
-  /// mesh are divided by `unit`: who multiplies all sizes afterwards gets those of the mesh back.
+  /// Gives a mesh, fixed or curvature size function the pieces of its sources and computes their
+  /// start sizes. Without any, a mesh or fixed size function has no effect. Takes effect with the
+  /// next `build`. Start sizes that are read from a mesh are divided by `unit`: who multiplies all
+  /// sizes afterwards gets those of the mesh back.
   DroppedFacets set_sources(std::size_t function, const std::vector<FacetedSource>& sources,
                             double unit = 1.0);
 
-  /// False while the sources of the function have given it no facet.
-  bool is_effective(std::size_t function) const { return !facets_[function].empty(); }
+  /// Gives a proximity size function the walls of its gap_regions and computes the start sizes of
+  /// its sources.
+  void set_regions(std::size_t function, const std::vector<WalledRegion>& regions);
+
+  /// False while the function has been given no source. A mesh or fixed size function needs a facet
+  /// as well; for the other kinds, no facet means that only their size limit acts.
+  bool is_effective(std::size_t function) const { return effective_[function]; }
 
   /// Brings trees and grids of the groups of these entities up to date (of all groups, if
   /// `entities` is empty). Groups not built since a change answer as before it; never built ones,
@@ -125,6 +138,7 @@ class SizeField {
   };
 
   void regroup();
+  void set_facets(std::size_t function, SizedFacets facets);
   void build_group(std::size_t index, Evaluator evaluator);
   bool lacks_grid(const Group& group) const;
   const Group* group(const Entity& entity) const;
@@ -133,6 +147,7 @@ class SizeField {
   FieldOptions options_;
   std::vector<SizeFunction> functions_;
   std::vector<SizedFacets> facets_;
+  std::vector<bool> effective_;
   std::vector<Group> groups_;
   std::unordered_map<Entity, std::size_t, EntityHash> group_of_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <tuple>
 
 #include "error.h"
 #include "number_text.h"
@@ -18,6 +19,14 @@ void check_size(double value, const std::string& what, const std::string& name) 
   if (!(value > 0.0 && value <= largest_size)) {
     throw Error(name + ": the " + what + " is " + shortest(value) +
                 ", but it must be a positive length in model units.");
+  }
+}
+
+void check_number(double value, double low, double high, const std::string& what,
+                  const std::string& allowed, const std::string& name) {
+  if (!(value >= low && value <= high)) {
+    throw Error(name + ": the " + what + " is " + shortest(value) + ", but it must be " + allowed +
+                ".");
   }
 }
 
@@ -40,7 +49,66 @@ void check_entities(const std::vector<Entity>& entities, int lowest_dim, int hig
 
 }  // namespace
 
-std::string kind_name(Kind kind) { return kind == Kind::mesh ? "mesh" : "fixed"; }
+std::string kind_name(Kind kind) {
+  switch (kind) {
+    case Kind::mesh:
+      return "mesh";
+    case Kind::fixed:
+      return "fixed";
+    case Kind::curvature:
+      return "curvature";
+    default:
+      return "proximity";
+  }
+}
+
+std::set<Entity> curvature_sources(const SizeFunction& function, const Topology& topology) {
+  const bool has_volumes = !topology.entities(3).empty();
+  std::set<Entity> result;
+  for (const Entity& source : function.sources) {
+    if (source.dim < 3) {
+      result.insert(source);
+    }
+    if (source.dim == 3 || (source.dim == 2 && !has_volumes)) {
+      for (const Entity& lower : topology.lower(source)) {
+        if (lower.dim == source.dim - 1) {
+          result.insert(lower);
+        }
+      }
+    }
+  }
+  return result;
+}
+
+std::vector<GapRegion> gap_regions(const SizeFunction& function, const Topology& topology) {
+  const auto is_volume = [](const Entity& entity) { return entity.dim == 3; };
+  const auto is_curve = [](const Entity& entity) { return entity.dim == 1; };
+  const auto& [attachments, sources] = std::tie(function.attachments, function.sources);
+  GapsBetween between = function.between;
+  if (between == GapsBetween::automatic) {
+    between = std::any_of(attachments.begin(), attachments.end(), is_volume) &&
+                      !std::all_of(sources.begin(), sources.end(), is_curve)
+                  ? GapsBetween::faces
+                  : GapsBetween::edges;
+  }
+  const std::set<Entity> below = topology.closure(sources);
+  std::vector<GapRegion> regions;
+  for (const Entity& region : topology.closure(attachments)) {
+    const bool wanted = region.dim == 3   ? between != GapsBetween::edges
+                        : region.dim == 2 ? between != GapsBetween::faces
+                                          : false;
+    GapRegion result{region, {}};
+    for (const Entity& lower : wanted ? topology.lower(region) : std::vector<Entity>()) {
+      if (lower.dim == region.dim - 1 && below.count(lower) > 0) {
+        result.sources.insert(lower);
+      }
+    }
+    if (!result.sources.empty()) {
+      regions.push_back(std::move(result));
+    }
+  }
+  return regions;
+}
 
 std::string function_name(const SizeFunction& function, std::size_t index) {
   std::string name = kind_name(function.kind);
@@ -55,10 +123,11 @@ void validate(const SizeFunction& function, const std::string& name, const Topol
   }
   check_size(function.size_limit, "size limit", name);
   const bool is_mesh = function.kind == Kind::mesh;
-  if (!is_mesh) {
+  const bool is_fixed = function.kind == Kind::fixed;
+  if (is_fixed) {
     check_size(function.start_size, "size", name);
   }
-  check_entities(function.sources, is_mesh ? 1 : 0, is_mesh ? 2 : 3, "source", name, topology);
+  check_entities(function.sources, is_fixed ? 0 : 1, is_mesh ? 2 : 3, "source", name, topology);
   check_entities(function.attachments, 1, 3, "attachment", name, topology);
   if (is_mesh) {
     for (const Entity& source : function.sources) {
@@ -68,6 +137,23 @@ void validate(const SizeFunction& function, const std::string& name, const Topol
                     "it out of one of the two.");
       }
     }
+  }
+  if (function.kind == Kind::curvature) {
+    check_number(function.angle, 0.1, 180.0, "angle", "degrees from 0.1 to 180, for example 18",
+                 name);
+  }
+  if (function.kind == Kind::proximity) {
+    check_number(function.cells_per_gap, 0.1, 1000.0, "number of cells per gap",
+                 "from 0.1 to 1000, for example 3", name);
+    if (gap_regions(function, topology).empty()) {
+      throw Error(name + ": none of its sources (" + entity_names(function.sources) +
+                  ") bounds an attachment in which it measures gaps: attach the volumes that its "
+                  "faces bound, or, for gaps between edges, the surfaces that its curves bound.");
+    }
+  }
+  if (function.kind == Kind::curvature || function.kind == Kind::proximity) {
+    check_number(function.min_size, 0.0, function.size_limit, "smallest size",
+                 "from 0 to the size limit, in model units", name);
   }
 }
 

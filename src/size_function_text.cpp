@@ -6,50 +6,71 @@
 #include <cmath>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 #include "error.h"
+#include "number_text.h"
 
 namespace meshgrow {
 
 namespace {
+
+template <typename Value>
+using Choices = std::vector<std::pair<const char*, Value>>;
+
+const Choices<Kind> kind_words = {{"mesh", Kind::mesh},
+                                  {"fixed", Kind::fixed},
+                                  {"curvature", Kind::curvature},
+                                  {"proximity", Kind::proximity}};
+const Choices<QuadSize> quad_size_words = {{"triangles", QuadSize::triangles},
+                                           {"sides", QuadSize::sides}};
+const Choices<GapsBetween> between_words = {
+    {"faces", GapsBetween::faces}, {"edges", GapsBetween::edges}, {"both", GapsBetween::both}};
+
+/// The words that a function of this kind takes.
+std::vector<std::string> words_of(Kind kind) {
+  switch (kind) {
+    case Kind::mesh:
+      return {"source", "attach", "growth", "limit", "quad_size"};
+    case Kind::fixed:
+      return {"source", "attach", "size", "growth", "limit"};
+    case Kind::curvature:
+      return {"source", "attach", "angle", "growth", "limit", "min"};
+    default:
+      return {"source", "attach", "cells", "between", "growth", "limit", "min"};
+  }
+}
+
+/// "'a', 'b' or 'c'"
+std::string quoted_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "'" : i + 1 == words.size() ? " or '" : ", '") + words[i] + "'";
+  }
+  return text;
+}
 
 class Parser {
  public:
   Parser(const std::string& text, const Topology& topology) : text_(text), topology_(topology) {}
 
   SizeFunction parse() {
-    SizeFunction function;
-    function.kind = parse_kind();
-    bool has_growth = false;
+    function_.kind = parse_kind();
     for (skip_space(); position_ < text_.size(); skip_space()) {
       const std::size_t begin = position_;
       const std::string word = parse_word();
-      if (word == "source") {
-        parse_selections(function.sources);
-      } else if (word == "attach") {
-        parse_selections(function.attachments);
-      } else if (word == "growth") {
-        function.growth_rate = parse_number("a growth rate such as 1.2");
-        has_growth = true;
-      } else if (word == "limit") {
-        function.size_limit = parse_number("a size limit");
-      } else if (word == "size" && function.kind == Kind::fixed) {
-        function.start_size = parse_number("a size");
-      } else if (word == "quad_size" && function.kind == Kind::mesh) {
-        function.quad_size = parse_quad_size();
-      } else {
+      if (!parse_common(word) && !parse_own(word)) {
         position_ = begin;
-        fail(function.kind == Kind::fixed ? "'source', 'attach', 'size', 'growth' or 'limit'"
-                                          : "'source', 'attach', 'growth', 'limit' or 'quad_size'");
+        fail(quoted_words(words_of(function_.kind)));
       }
     }
-    require(!function.sources.empty(), "'source' with entities");
-    require(!function.attachments.empty(), "'attach' with entities");
-    require(has_growth, "'growth' with a number");
-    require(function.size_limit != 0.0, "'limit' with a positive number");
-    require(function.kind != Kind::fixed || function.start_size != 0.0,
+    require(!function_.sources.empty(), "'source' with entities");
+    require(!function_.attachments.empty(), "'attach' with entities");
+    require(has_growth_, "'growth' with a number");
+    require(function_.size_limit != 0.0, "'limit' with a positive number");
+    require(function_.kind != Kind::fixed || function_.start_size != 0.0,
             "'size' with a positive number");
-    return function;
+    return std::move(function_);
   }
 
   std::vector<Entity> parse_only_entities() {
@@ -112,32 +133,61 @@ class Parser {
     return value;
   }
 
-  Kind parse_kind() {
-    skip_space();
-    const std::size_t begin = position_;
-    const std::string word = parse_word();
-    if (word == "mesh") {
-      return Kind::mesh;
+  /// What every kind has. False if the word is something else.
+  bool parse_common(const std::string& word) {
+    if (word == "source") {
+      parse_selections(function_.sources);
+    } else if (word == "attach") {
+      parse_selections(function_.attachments);
+    } else if (word == "growth") {
+      function_.growth_rate = parse_number("a growth rate such as 1.2");
+      has_growth_ = true;
+    } else if (word == "limit") {
+      function_.size_limit = parse_number("a size limit");
+    } else {
+      return false;
     }
-    if (word == "fixed") {
-      return Kind::fixed;
-    }
-    position_ = begin;
-    fail("'mesh' or 'fixed'");
+    return true;
   }
 
-  QuadSize parse_quad_size() {
+  /// What only some kinds have. False if the word is something else.
+  bool parse_own(const std::string& word) {
+    const std::vector<std::string> words = words_of(function_.kind);
+    if (std::find(words.begin(), words.end(), word) == words.end()) {
+      return false;
+    }
+    if (word == "size") {
+      function_.start_size = parse_number("a size");
+    } else if (word == "quad_size") {
+      function_.quad_size = parse_choice(quad_size_words);
+    } else if (word == "angle") {
+      function_.angle = parse_number("an angle in degrees such as 18");
+    } else if (word == "cells") {
+      function_.cells_per_gap = parse_number("a number of cells such as 3");
+    } else if (word == "between") {
+      function_.between = parse_choice(between_words);
+    } else {
+      function_.min_size = parse_number("a smallest size");
+    }
+    return true;
+  }
+
+  Kind parse_kind() { return parse_choice(kind_words); }
+
+  template <typename Value>
+  Value parse_choice(const Choices<Value>& choices) {
     skip_space();
     const std::size_t begin = position_;
     const std::string word = parse_word();
-    if (word == "triangles") {
-      return QuadSize::triangles;
-    }
-    if (word == "sides") {
-      return QuadSize::sides;
+    std::vector<std::string> words;
+    for (const auto& [name, value] : choices) {
+      if (word == name) {
+        return value;
+      }
+      words.emplace_back(name);
     }
     position_ = begin;
-    fail("'triangles' or 'sides'");
+    fail(quoted_words(words));
   }
 
   void parse_selections(std::vector<Entity>& entities) {
@@ -263,12 +313,66 @@ class Parser {
   const std::string& text_;
   const Topology& topology_;
   std::size_t position_ = 0;
+  SizeFunction function_;
+  bool has_growth_ = false;
 };
+
+template <typename Value>
+std::string word_of(Value value, const Choices<Value>& choices) {
+  return std::find_if(choices.begin(), choices.end(),
+                      [value](const auto& choice) { return choice.second == value; })
+      ->first;
+}
+
+/// "Surface{7,9}, Volume{2}"
+std::string selection_text(const std::vector<Entity>& entities) {
+  std::string text;
+  int dim = -1;
+  for (const Entity& entity : entities) {
+    if (entity.dim == dim) {
+      text.back() = ',';
+    } else {
+      text += (text.empty() ? "" : ", ") + dimension_name(entity.dim) + "{";
+    }
+    text += std::to_string(entity.tag) + "}";
+    dim = entity.dim;
+  }
+  return text;
+}
+
+std::string own_text(const SizeFunction& function) {
+  const SizeFunction standard;
+  std::string text;
+  if (function.kind == Kind::fixed) {
+    text += " size " + exact_text(function.start_size);
+  }
+  if (function.kind == Kind::mesh && function.quad_size != standard.quad_size) {
+    text += " quad_size " + word_of(function.quad_size, quad_size_words);
+  }
+  if (function.kind == Kind::curvature) {
+    text += " angle " + exact_text(function.angle);
+  }
+  if (function.kind == Kind::proximity) {
+    text += " cells " + exact_text(function.cells_per_gap);
+    if (function.between != GapsBetween::automatic) {
+      text += " between " + word_of(function.between, between_words);
+    }
+  }
+  return text;
+}
 
 }  // namespace
 
 SizeFunction parse_size_function(const std::string& text, const Topology& topology) {
   return Parser(text, topology).parse();
+}
+
+std::string size_function_text(const SizeFunction& function) {
+  const bool has_min = function.kind == Kind::curvature || function.kind == Kind::proximity;
+  return kind_name(function.kind) + " source " + selection_text(function.sources) + " attach " +
+         selection_text(function.attachments) + own_text(function) + " growth " +
+         exact_text(function.growth_rate) + " limit " + exact_text(function.size_limit) +
+         (has_min && function.min_size != 0.0 ? " min " + exact_text(function.min_size) : "");
 }
 
 std::vector<Entity> parse_entities(const std::string& text, const Topology& topology) {

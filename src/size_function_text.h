@@ -13,6 +13,12 @@ namespace meshgrow {
 ///
 ///     mesh  source Surface{7}   attach Volume{2}                 growth 1.2 limit 2
 ///     fixed source Curve{1,4:6} attach Physical Surface{"inlet"} size 0.1 growth 1.2 limit 2
+///     curvature source Surface{:} attach Volume{1} angle 18 growth 1.2 limit 2 min 0.01
+///     proximity source Volume{1}  attach Volume{1} cells 3 between both growth 1.2 limit 2
+///
+/// Besides `quad_size triangles` or `sides` (mesh), `angle` in degrees (curvature, default 18),
+/// `cells` per gap (proximity, default 3), `between faces`, `edges` or `both` (proximity) and `min`
+/// (curvature, proximity) may be left out.
 ///
 /// Entities are written as in .geo: Point, Curve (or Line), Surface, Volume with tags, ranges a:b,
 /// or : for all; Physical before them takes physical tags and names (quotes may be left out). After
@@ -21,6 +27,9 @@ namespace meshgrow {
 /// Throws Error that tells the position (counted from 1) and what was expected there, and for
 /// entities or physical groups that are not in the model. Thread-safe.
 SizeFunction parse_size_function(const std::string& text, const Topology& topology);
+
+/// The line of text that reads as this function, in the same numbers to the bit. Thread-safe.
+std::string size_function_text(const SizeFunction& function);
 
 /// Reads entities alone, such as `Volume{2}, Physical Surface{"inlet"}`; sorted, each once.
 std::vector<Entity> parse_entities(const std::string& text, const Topology& topology);

@@ -43,6 +43,12 @@ double triangle_size(const Vec3& a, const Vec3& b, const Vec3& c);
 struct DroppedFacets {
   std::size_t zero_size = 0;
   std::size_t not_finite = 0;
+
+  DroppedFacets& operator+=(const DroppedFacets& more) {
+    zero_size += more.zero_size;
+    not_finite += more.not_finite;
+    return *this;
+  }
 };
 
 /// Appends the facet unless its start size is not positive or something in it is not finite, which

@@ -32,6 +32,13 @@ TEST(NumberText, ShortestOfSixDigits) {
   EXPECT_EQ(shortest(1.0 / 3.0), "0.333333");
 }
 
+TEST(NumberText, ExactTextReadsAsTheSameNumber) {
+  EXPECT_EQ(exact_text(0.1), "0.1");
+  EXPECT_EQ(exact_text(2.0), "2");
+  EXPECT_EQ(exact_text(0.1 + 0.2), "0.30000000000000004");
+  EXPECT_EQ(std::stod(exact_text(1.0 / 3.0)), 1.0 / 3.0);
+}
+
 /// Points for thousands and a comma for decimals, as a program in another language may have set.
 class CommaForDecimals : public std::numpunct<char> {
  protected:
@@ -45,6 +52,7 @@ TEST(NumberText, IsTheSameInEveryLocale) {
   EXPECT_EQ(rounded(1234.5, 1), "1234.5");
   EXPECT_EQ(shortest(1234.5), "1234.5");
   EXPECT_EQ(grouped_digits(1234567), "1,234,567");
+  EXPECT_EQ(exact_text(1234.5), "1234.5");
   std::locale::global(before);
 }
 

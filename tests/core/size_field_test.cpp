@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "error.h"
 #include "growth_law.h"
 #include "random_facets.h"
+#include "start_sizes/proximity_start_sizes.h"
 
 namespace meshgrow {
 namespace {
@@ -467,6 +469,160 @@ TEST(SizeField, SourceVolumeWithoutPiecesHasNoEffect) {
   field.add(fixed_function({left_volume}, {left_volume, right_volume}, 0.1));
   field.build();
   EXPECT_EQ(field.size(left_volume, {0.5, 0.5, 0.5}), SizeField::no_size);
+}
+
+// ==== Four kinds together
+
+/// A size function of another kind.
+SizeFunction function_of(Kind kind, Entities sources, Entities attachments, double growth_rate,
+                         double size_limit) {
+  SizeFunction function =
+      mesh_function(std::move(sources), std::move(attachments), growth_rate, size_limit);
+  function.kind = kind;
+  return function;
+}
+
+/// The left and right end of the left cube, as walls that look at each other.
+WalledRegion left_cube_walls() {
+  WalledRegion region{{left_volume, {left_end, middle}}, {}};
+  for (const auto& [entity, x] : {std::make_pair(left_end, 0.0), std::make_pair(middle, 1.0)}) {
+    for (const auto& [a, b, c] : end_mesh(entity, x, 1).triangles) {
+      region.walls.push_back({Facet::triangle(a, b, c), Vec3(x == 0.0 ? 1 : -1, 0, 0), entity});
+    }
+  }
+  return region;
+}
+
+/// All four kinds on the left cube, each with its own growth and limit; the sizes of each alone are
+/// those of `alone`.
+SizeField four_kinds(const FieldOptions& options, const Indices& alone = {0, 1, 2, 3}) {
+  std::vector<SizeFunction> functions = {
+      mesh_function({left_end}, {left_volume}, 2.5, 0.5),
+      fixed_function({left_rim}, {left_volume}, 0.05, 1.5, 0.6),
+      function_of(Kind::curvature, {middle}, {left_volume}, 1.1, 0.45),
+      function_of(Kind::proximity, {left_volume}, {left_volume}, 1.3, 0.7)};
+  functions[3].cells_per_gap = 6.0;
+  FacetedSource bent = end_mesh(middle, 1.0, 1);
+  bent.triangle_curvatures = {0.8, 4.0};
+  SizeField field(two_cubes(), options);
+  for (const std::size_t i : alone) {
+    const std::size_t index = field.add(functions[i]);
+    switch (functions[i].kind) {
+      case Kind::mesh:
+        field.set_sources(index, {end_mesh(left_end, 0.0, 16)});
+        break;
+      case Kind::fixed:
+        field.set_sources(index, {point_source(left_rim, {0.5, 1.0, 0.2})});
+        break;
+      case Kind::curvature:
+        field.set_sources(index, {bent});
+        break;
+      case Kind::proximity:
+        field.set_regions(index, {left_cube_walls()});
+        break;
+    }
+  }
+  field.build();
+  return field;
+}
+
+TEST(SizeField, SmallestOfFourKindsWithTheirOwnGrowthAndLimit) {
+  const SizeField together = four_kinds(exact_options());
+  const SizeField on_grid = four_kinds(grid_options());
+  std::vector<SizeField> alone;
+  for (const std::size_t i : {0, 1, 2, 3}) {
+    alone.push_back(four_kinds(exact_options(), {i}));
+  }
+  constexpr unsigned seed = 12;
+  test::Random random(seed);
+  std::set<std::size_t> ruling;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p = test::random_in_box(random, slab(-0.1, 1.1));
+    std::vector<double> sizes;
+    for (const SizeField& field : alone) {
+      sizes.push_back(field.size(left_volume, p));
+    }
+    const auto smallest = std::min_element(sizes.begin(), sizes.end());
+    ruling.insert(static_cast<std::size_t>(smallest - sizes.begin()));
+    ASSERT_EQ(together.size(left_volume, p), *smallest) << p.transpose() << ", seed " << seed;
+    ASSERT_LE(on_grid.size(left_volume, p), 1.05 * *smallest) << p.transpose();
+  }
+  EXPECT_EQ(ruling.size(), 4u) << "each kind should rule somewhere";
+}
+
+TEST(SizeField, AllKindsOnTheSameEntitiesShareOneGrid) {
+  const SizeField field = four_kinds(grid_options());
+  ASSERT_EQ(field.groups().size(), 1u);
+  EXPECT_TRUE(field.groups()[0].has_grid);
+  EXPECT_EQ(field.groups()[0].functions, (Indices{0, 1, 2, 3}));
+  EXPECT_EQ(field.groups()[0].size_limit, 0.45);
+}
+
+TEST(SizeField, NumberOfGridsIsThatOfDifferentSetsOfFunctions) {
+  SizeField field(two_cubes(), grid_options());
+  const auto curvature = [&](Entities attachments) {
+    FacetedSource bent = end_mesh(middle, 1.0, 1);
+    bent.triangle_curvatures = {3.0, 3.0};
+    const std::size_t index =
+        field.add(function_of(Kind::curvature, {middle}, std::move(attachments), 1.2, 1.0));
+    field.set_sources(index, {bent});
+  };
+  const auto grids = [&] {
+    field.build();
+    const auto groups = field.groups();
+    return std::count_if(groups.begin(), groups.end(), [](const auto& g) { return g.has_grid; });
+  };
+  curvature({left_volume, right_volume});
+  EXPECT_EQ(grids(), 1);
+  curvature({left_volume});
+  EXPECT_EQ(grids(), 2) << "left, and what is only right";
+  curvature({right_volume});
+  EXPECT_EQ(grids(), 3) << "left, common, right";
+  curvature({left_volume, right_volume});
+  EXPECT_EQ(grids(), 3);
+  curvature({lone_volume});
+  EXPECT_EQ(grids(), 4);
+}
+
+TEST(SizeField, FlatSourceOfCurvatureStillHasItsLimit) {
+  for (const FieldOptions& options : {exact_options(), grid_options()}) {
+    SizeField field(two_cubes(), options);
+    field.add(function_of(Kind::curvature, {left_end}, {left_volume}, 1.2, 0.75));
+    field.add(mesh_function({right_end}, {right_volume}));
+    EXPECT_FALSE(field.is_effective(0)) << "before it knows its sources";
+    FacetedSource flat = end_mesh(left_end, 0.0, 4);
+    flat.triangle_curvatures.assign(flat.triangles.size(), 0.0);
+    field.set_sources(0, {flat});
+    EXPECT_TRUE(field.is_effective(0));
+    field.build();
+    EXPECT_EQ(field.size(left_volume, {0.5, 0.5, 0.5}), 0.75);
+    EXPECT_EQ(field.exact_size(left_rim, {0, 0, 0}), 0.75);
+    EXPECT_EQ(field.size(right_volume, {1.5, 0.5, 0.5}), SizeField::no_size);
+  }
+}
+
+TEST(SizeField, GapsGrowFromBothWallsAndOnlyFromSources) {
+  SizeFunction function = function_of(Kind::proximity, {left_volume}, {left_volume}, 1.25, 0.75);
+  function.cells_per_gap = 4.0;
+  SizeField field(two_cubes(), exact_options());
+  field.add(function);
+  field.set_regions(0, {left_cube_walls()});
+  field.build();
+  const double start = gap_start_size(1.0, 4.0, 1.25);
+  EXPECT_NEAR(field.size(left_volume, {0.0, 0.5, 0.5}), start, 1e-9);
+  EXPECT_NEAR(field.size(left_volume, {1.0, 0.3, 0.7}), start, 1e-9);
+  EXPECT_NEAR(field.size(left_volume, {0.5, 0.5, 0.5}), start + 0.1, 1e-9);
+
+  WalledRegion one_source = left_cube_walls();
+  one_source.gaps.sources = {left_end};
+  field.set_regions(0, {one_source});
+  field.build();
+  EXPECT_NEAR(field.size(left_volume, {0.0, 0.5, 0.5}), start, 1e-9);
+  EXPECT_NEAR(field.size(left_volume, {1.0, 0.5, 0.5}), start + 0.2, 1e-9);
+
+  field.set_regions(0, {});
+  field.build();
+  EXPECT_EQ(field.size(left_volume, {0.0, 0.5, 0.5}), 0.75);
 }
 
 // ==== Grid and exact sizes

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,8 @@ void expect_error(SizeFunction function, const std::function<void(SizeFunction&)
 TEST(SizeFunction, KindsHaveNames) {
   EXPECT_EQ(kind_name(Kind::mesh), "mesh");
   EXPECT_EQ(kind_name(Kind::fixed), "fixed");
+  EXPECT_EQ(kind_name(Kind::curvature), "curvature");
+  EXPECT_EQ(kind_name(Kind::proximity), "proximity");
 }
 
 TEST(SizeFunction, GoodOnesPass) {
@@ -206,6 +209,135 @@ TEST(SizeFunction, MeshSourceMustNotBeItsOwnAttachment) {
                },
                {"Surface 1"});
   expect_error(mesh_function(), [](SizeFunction& f) { f.sources.push_back({1, 4}); }, {"Curve 4"});
+}
+
+// ==== Curvature and proximity
+
+/// Two volumes that share surface 3; surface 2 with curves 1 and 2; curve 4 embedded in volume 2.
+Topology two_volumes() {
+  Topology topology;
+  for (int tag = 1; tag <= 4; ++tag) {
+    topology.add_entity({0, tag}, {});
+    topology.add_entity({1, tag}, {{0, tag}});
+  }
+  topology.add_entity({2, 1}, {{1, 1}});
+  topology.add_entity({2, 2}, {{1, 1}, {1, 2}});
+  topology.add_entity({2, 3}, {{1, 2}, {1, 3}});
+  topology.add_entity({2, 4}, {{1, 3}});
+  topology.add_entity({3, 1}, {{2, 1}, {2, 2}, {2, 3}});
+  topology.add_entity({3, 2}, {{2, 3}, {2, 4}, {1, 4}});
+  return topology;
+}
+
+SizeFunction of_kind(Kind kind, std::vector<Entity> sources, std::vector<Entity> attachments) {
+  SizeFunction function = mesh_function();
+  function.kind = kind;
+  function.sources = std::move(sources);
+  function.attachments = std::move(attachments);
+  return function;
+}
+
+SizeFunction curvature_function() { return of_kind(Kind::curvature, {{3, 1}, {1, 4}}, {{3, 2}}); }
+SizeFunction proximity_function() { return of_kind(Kind::proximity, {{3, 1}}, {{3, 1}}); }
+
+std::string message_in_two_volumes(const SizeFunction& function) {
+  try {
+    validate(function, "Function under test", two_volumes());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SizeFunction, CurvatureAndProximityMayActOnTheirSources) {
+  EXPECT_EQ(message_in_two_volumes(curvature_function()), "");
+  EXPECT_EQ(message_in_two_volumes(proximity_function()), "");
+  EXPECT_EQ(message_in_two_volumes(of_kind(Kind::curvature, {{2, 1}}, {{2, 1}})), "");
+}
+
+TEST(SizeFunction, CurvatureAndProximityHaveNoPointsAsSources) {
+  for (const Kind kind : {Kind::curvature, Kind::proximity}) {
+    EXPECT_NE(message_in_two_volumes(of_kind(kind, {{0, 1}}, {{3, 1}})).find("Point 1"),
+              std::string::npos);
+  }
+}
+
+TEST(SizeFunction, AngleCellsAndSmallestSizeHaveRanges) {
+  const auto expect = [](SizeFunction function, double SizeFunction::*value, double bad,
+                         const std::string& name) {
+    function.*value = bad;
+    const std::string message = message_in_two_volumes(function);
+    EXPECT_NE(message.find(name), std::string::npos) << bad << ": " << message;
+  };
+  for (const double bad : {0.0, -18.0, 181.0, not_a_number, infinite}) {
+    expect(curvature_function(), &SizeFunction::angle, bad, "angle");
+  }
+  for (const double bad : {0.0, -3.0, 1e9, not_a_number, infinite}) {
+    expect(proximity_function(), &SizeFunction::cells_per_gap, bad, "cells per gap");
+  }
+  for (const double bad : {-1.0, 2.5, not_a_number, infinite}) {  // the limit is 2
+    expect(curvature_function(), &SizeFunction::min_size, bad, "smallest size");
+    expect(proximity_function(), &SizeFunction::min_size, bad, "smallest size");
+  }
+}
+
+TEST(SizeFunction, VolumesStandForTheirFacesAsSourcesOfCurvature) {
+  EXPECT_EQ(curvature_sources(curvature_function(), two_volumes()),
+            (std::set<Entity>{{1, 4}, {2, 1}, {2, 2}, {2, 3}}));
+  EXPECT_EQ(curvature_sources(of_kind(Kind::curvature, {{2, 2}}, {{3, 1}}), two_volumes()),
+            (std::set<Entity>{{2, 2}}));
+}
+
+TEST(SizeFunction, SurfacesStandForTheirCurvesAsWellWhereThereAreNoVolumes) {
+  Topology topology;
+  topology.add_entity({0, 1}, {});
+  topology.add_entity({1, 1}, {{0, 1}});
+  topology.add_entity({1, 2}, {{0, 1}});
+  topology.add_entity({2, 1}, {{1, 1}, {0, 1}});
+  EXPECT_EQ(curvature_sources(of_kind(Kind::curvature, {{2, 1}}, {{2, 1}}), topology),
+            (std::set<Entity>{{1, 1}, {2, 1}}));
+}
+
+/// Regions as "3.1: 2.1 2.3; …".
+std::string regions(const SizeFunction& function, GapsBetween between = GapsBetween::automatic) {
+  SizeFunction wanted = function;
+  wanted.between = between;
+  std::string text;
+  const auto name = [](const Entity& e) {
+    return std::to_string(e.dim) + "." + std::to_string(e.tag);
+  };
+  for (const GapRegion& region : gap_regions(wanted, two_volumes())) {
+    text += (text.empty() ? "" : "; ") + name(region.region) + ":";
+    for (const Entity& source : region.sources) {
+      text += " " + name(source);
+    }
+  }
+  return text;
+}
+
+TEST(SizeFunction, GapsAreMeasuredInsideAttachments) {
+  const std::string faces = "3.1: 2.1 2.2 2.3";
+  EXPECT_EQ(regions(proximity_function()), faces);
+  EXPECT_EQ(regions(proximity_function(), GapsBetween::faces), faces);
+  const std::string edges = "2.1: 1.1; 2.2: 1.1 1.2; 2.3: 1.2 1.3";
+  EXPECT_EQ(regions(proximity_function(), GapsBetween::edges), edges);
+  EXPECT_EQ(regions(proximity_function(), GapsBetween::both), edges + "; " + faces);
+  // The common face, through the other volume.
+  EXPECT_EQ(regions(of_kind(Kind::proximity, {{3, 1}}, {{3, 2}})), "3.2: 2.3");
+  // Surfaces attached by themselves, and curves as sources: edges.
+  EXPECT_EQ(regions(of_kind(Kind::proximity, {{2, 2}}, {{2, 2}})), "2.2: 1.1 1.2");
+  EXPECT_EQ(regions(of_kind(Kind::proximity, {{1, 2}}, {{3, 1}})), "2.2: 1.2; 2.3: 1.2");
+  EXPECT_EQ(regions(of_kind(Kind::proximity, {{2, 4}}, {{3, 1}})), "");
+}
+
+TEST(SizeFunction, ProximityWithoutAGapToMeasureIsAnError) {
+  for (const SizeFunction& function :
+       {of_kind(Kind::proximity, {{2, 4}}, {{3, 1}}), of_kind(Kind::proximity, {{1, 4}}, {{3, 2}}),
+        of_kind(Kind::proximity, {{2, 1}}, {{1, 1}})}) {
+    const std::string message = message_in_two_volumes(function);
+    EXPECT_NE(message.find("bounds an attachment"), std::string::npos) << message;
+    EXPECT_NE(message.find(entity_name(function.sources[0])), std::string::npos) << message;
+  }
 }
 
 }  // namespace

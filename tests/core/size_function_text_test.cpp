@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <clocale>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -80,6 +82,113 @@ void expect_unknown(const std::string& text, const std::string& name) {
 }
 
 // ==== What is understood
+
+TEST(SizeFunctionText, CurvatureExampleOfTheHeader) {
+  const SizeFunction function =
+      parse("curvature source Surface{:} attach Volume{1} angle 12.5 growth 1.2 limit 2 min 0.01");
+  EXPECT_EQ(function.kind, Kind::curvature);
+  EXPECT_EQ(function.sources, (Entities{{2, 1}, {2, 2}, {2, 7}, {2, 8}, {2, 9}}));
+  EXPECT_EQ(function.attachments, (Entities{{3, 1}}));
+  EXPECT_EQ(function.angle, 12.5);
+  EXPECT_EQ(function.growth_rate, 1.2);
+  EXPECT_EQ(function.size_limit, 2.0);
+  EXPECT_EQ(function.min_size, 0.01);
+}
+
+TEST(SizeFunctionText, ProximityExampleOfTheHeader) {
+  const SizeFunction function = parse(
+      "proximity source Volume{1} attach Volume{1} cells 2.5 between both growth 1.2 limit 2");
+  EXPECT_EQ(function.kind, Kind::proximity);
+  EXPECT_EQ(function.sources, (Entities{{3, 1}}));
+  EXPECT_EQ(function.cells_per_gap, 2.5);
+  EXPECT_EQ(function.between, GapsBetween::both);
+  EXPECT_EQ(function.min_size, 0.0);
+}
+
+TEST(SizeFunctionText, WhatMayBeLeftOutHasDefaults) {
+  const std::string rest = " source Volume{1} attach Volume{1} growth 1.2 limit 2";
+  EXPECT_EQ(parse("curvature" + rest).angle, 18.0);
+  EXPECT_EQ(parse("curvature" + rest).min_size, 0.0);
+  EXPECT_EQ(parse("proximity" + rest).cells_per_gap, 3.0);
+  EXPECT_EQ(parse("proximity" + rest).between, GapsBetween::automatic);
+}
+
+TEST(SizeFunctionText, GapsBetweenFacesOrEdges) {
+  const std::string text =
+      "proximity source Volume{1} attach Volume{1} growth 1.2 limit 2 between ";
+  EXPECT_EQ(parse(text + "faces").between, GapsBetween::faces);
+  EXPECT_EQ(parse(text + "edges").between, GapsBetween::edges);
+  EXPECT_EQ(parse(text + "both").between, GapsBetween::both);
+}
+
+// ==== What is written
+
+/// Numbers that need all their digits, entities in several dimensions.
+SizeFunction random_function(std::mt19937_64& random, Kind kind) {
+  const auto number = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto some = [&random](Entities entities) {
+    std::shuffle(entities.begin(), entities.end(), random);
+    entities.resize(1 + random() % entities.size());
+    std::sort(entities.begin(), entities.end());
+    return entities;
+  };
+  SizeFunction function;
+  function.kind = kind;
+  function.sources = some({{1, 4}, {1, 5}, {2, 1}, {2, 7}, {2, 8}});
+  function.attachments = some({{1, 1}, {2, 9}, {3, 1}, {3, 2}});
+  function.growth_rate = number(1.0, 2.0);
+  function.size_limit = number(1e-9, 1e9);
+  if (kind == Kind::mesh) {
+    function.quad_size = random() % 2 == 0 ? QuadSize::sides : QuadSize::triangles;
+  } else if (kind == Kind::fixed) {
+    function.start_size = number(1e-9, 1.0);
+  } else if (kind == Kind::curvature) {
+    function.angle = number(1.0, 90.0);
+  } else {
+    function.cells_per_gap = number(0.5, 20.0);
+    function.between = static_cast<GapsBetween>(random() % 4);
+  }
+  if (kind == Kind::curvature || kind == Kind::proximity) {
+    function.min_size = random() % 2 == 0 ? 0.0 : number(1e-12, 1e-9);
+  }
+  return function;
+}
+
+TEST(SizeFunctionText, WhatIsWrittenReadsTheSame) {
+  constexpr unsigned seed = 11;
+  std::mt19937_64 random(seed);
+  for (const Kind kind : {Kind::mesh, Kind::fixed, Kind::curvature, Kind::proximity}) {
+    for (int i = 0; i < 200; ++i) {
+      const SizeFunction function = random_function(random, kind);
+      const std::string text = size_function_text(function);
+      const SizeFunction read = parse(text);
+      ASSERT_EQ(read.kind, function.kind) << text << ", seed " << seed;
+      ASSERT_EQ(read.sources, function.sources) << text;
+      ASSERT_EQ(read.attachments, function.attachments) << text;
+      ASSERT_EQ(read.growth_rate, function.growth_rate) << text;
+      ASSERT_EQ(read.size_limit, function.size_limit) << text;
+      ASSERT_EQ(read.start_size, function.start_size) << text;
+      ASSERT_EQ(read.quad_size, function.quad_size) << text;
+      ASSERT_EQ(read.angle, function.angle) << text;
+      ASSERT_EQ(read.cells_per_gap, function.cells_per_gap) << text;
+      ASSERT_EQ(read.between, function.between) << text;
+      ASSERT_EQ(read.min_size, function.min_size) << text;
+      ASSERT_EQ(size_function_text(read), text);
+    }
+  }
+}
+
+TEST(SizeFunctionText, IsWrittenAsAPersonWould) {
+  EXPECT_EQ(size_function_text(parse("fixed size 0.1 source Surface{8,7},Curve{4} limit 2 "
+                                     "attach Volume{2} growth 1.2")),
+            "fixed source Curve{4}, Surface{7,8} attach Volume{2} size 0.1 growth 1.2 limit 2");
+  EXPECT_EQ(size_function_text(parse("proximity source Volume{1} attach Volume{1} cells 3 "
+                                     "growth 1.2 limit 2 min 0.25 between edges")),
+            "proximity source Volume{1} attach Volume{1} cells 3 between edges growth 1.2 limit 2 "
+            "min 0.25");
+}
 
 TEST(SizeFunctionText, MeshExampleOfTheHeader) {
   const SizeFunction function =
@@ -219,13 +328,12 @@ TEST(SizeFunctionText, DecimalPointInEveryLocale) {
 // ==== Mistakes
 
 TEST(SizeFunctionText, MistakesInTheKind) {
-  expect_error_at("^", "'mesh' or 'fixed'");
-  expect_error_at("   ^", "'mesh' or 'fixed'");
-  expect_error_at("^mash source Surface{7} attach Volume{2} growth 1.2 limit 2",
-                  "'mesh' or 'fixed'");
-  expect_error_at("  ^Mesh source Surface{7} attach Volume{2} growth 1.2 limit 2",
-                  "'mesh' or 'fixed'");
-  expect_error_at("^12", "'mesh' or 'fixed'");
+  const std::string kinds = "'mesh', 'fixed', 'curvature' or 'proximity'";
+  expect_error_at("^", kinds);
+  expect_error_at("   ^", kinds);
+  expect_error_at("^mash source Surface{7} attach Volume{2} growth 1.2 limit 2", kinds);
+  expect_error_at("  ^Mesh source Surface{7} attach Volume{2} growth 1.2 limit 2", kinds);
+  expect_error_at("^12", kinds);
 }
 
 TEST(SizeFunctionText, MistakesInTheParts) {
@@ -261,6 +369,22 @@ TEST(SizeFunctionText, MistakesInTheRuleForQuads) {
                   "'triangles' or 'sides'");
   expect_error_at("mesh source Surface{7} attach Volume{2} growth 1.2 limit 2 quad_size^",
                   "'triangles' or 'sides'");
+}
+
+TEST(SizeFunctionText, MistakesInWhatOnlySomeKindsHave) {
+  const std::string rest = " source Surface{7} attach Volume{2} growth 1.2 limit 2 ";
+  expect_error_at("curvature" + rest + "angle ^wide", "angle in degrees");
+  expect_error_at("curvature" + rest + "min ^", "smallest size");
+  expect_error_at("proximity" + rest + "cells ^three", "number of cells");
+  expect_error_at("proximity" + rest + "between ^walls", "'faces', 'edges' or 'both'");
+  const std::string curvature_words = "'source', 'attach', 'angle', 'growth', 'limit' or 'min'";
+  expect_error_at("curvature" + rest + "^cells 3", curvature_words);
+  expect_error_at("curvature" + rest + "^size 3", curvature_words);
+  expect_error_at("curvature" + rest + "^quad_size sides", curvature_words);
+  expect_error_at("proximity" + rest + "^angle 3",
+                  "'source', 'attach', 'cells', 'between', 'growth', 'limit' or 'min'");
+  expect_error_at("fixed" + rest + "^min 3", "'size', 'growth' or 'limit'");
+  expect_error_at("mesh" + rest + "^angle 3", "'growth', 'limit' or 'quad_size'");
 }
 
 TEST(SizeFunctionText, MistakesInSelections) {
