@@ -11,6 +11,7 @@
 #include "meshgrow.h"
 #include "model_field.h"
 #include "model_reader.h"
+#include "size_function_text.h"
 
 struct meshgrow_field {
   meshgrow::ModelField model_field;
@@ -20,6 +21,8 @@ namespace {
 
 using meshgrow::Entity;
 using meshgrow::Error;
+using meshgrow::Kind;
+using meshgrow::SizeFunction;
 using nlohmann::json;
 
 thread_local std::string last_error;
@@ -65,6 +68,18 @@ meshgrow::ModelField& deref(meshgrow_field* field) {
     throw Error("There is no size field: create one first.");
   }
   return field->model_field;
+}
+
+/// What functions of all kinds have.
+SizeFunction common(Kind kind, std::vector<Entity> sources, std::vector<Entity> attachments,
+                    double growth_rate, double size_limit) {
+  SizeFunction function;
+  function.kind = kind;
+  function.sources = std::move(sources);
+  function.attachments = std::move(attachments);
+  function.growth_rate = growth_rate;
+  function.size_limit = size_limit;
+  return function;
 }
 
 using SizeOf = double (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec3&) const;
@@ -139,8 +154,9 @@ json dim_tags(const std::vector<Entity>& entities) {
 json summary_json(const meshgrow::SizeField& field) {
   json functions = json::array();
   for (size_t i = 0; i < field.functions().size(); ++i) {
-    const meshgrow::SizeFunction& function = field.functions()[i];
+    const SizeFunction& function = field.functions()[i];
     functions.push_back({{"kind", meshgrow::kind_name(function.kind)},
+                         {"text", meshgrow::size_function_text(function)},
                          {"sources", dim_tags(function.sources)},
                          {"attachments", dim_tags(function.attachments)},
                          {"growth_rate", function.growth_rate},
@@ -206,12 +222,8 @@ int meshgrow_field_add_mesh(meshgrow_field* field, const int* sources, size_t so
                             const int* attach, size_t attach_n, double growth_rate,
                             double size_limit, int quad_sides) {
   return guarded(1, [&] {
-    meshgrow::SizeFunction function;
-    function.kind = meshgrow::Kind::mesh;
-    function.sources = entities_of(sources, sources_n);
-    function.attachments = entities_of(attach, attach_n);
-    function.growth_rate = growth_rate;
-    function.size_limit = size_limit;
+    SizeFunction function = common(Kind::mesh, entities_of(sources, sources_n),
+                                   entities_of(attach, attach_n), growth_rate, size_limit);
     function.quad_size =
         quad_sides != 0 ? meshgrow::QuadSize::sides : meshgrow::QuadSize::triangles;
     deref(field).add(std::move(function));
@@ -223,14 +235,49 @@ int meshgrow_field_add_fixed(meshgrow_field* field, const int* sources, size_t s
                              const int* attach, size_t attach_n, double size, double growth_rate,
                              double size_limit) {
   return guarded(1, [&] {
-    meshgrow::SizeFunction function;
-    function.kind = meshgrow::Kind::fixed;
-    function.sources = entities_of(sources, sources_n);
-    function.attachments = entities_of(attach, attach_n);
+    SizeFunction function = common(Kind::fixed, entities_of(sources, sources_n),
+                                   entities_of(attach, attach_n), growth_rate, size_limit);
     function.start_size = size;
-    function.growth_rate = growth_rate;
-    function.size_limit = size_limit;
     deref(field).add(std::move(function));
+    return 0;
+  });
+}
+
+int meshgrow_field_add_curvature(meshgrow_field* field, const int* sources, size_t sources_n,
+                                 const int* attach, size_t attach_n, double angle,
+                                 double growth_rate, double size_limit, double min_size) {
+  return guarded(1, [&] {
+    SizeFunction function = common(Kind::curvature, entities_of(sources, sources_n),
+                                   entities_of(attach, attach_n), growth_rate, size_limit);
+    function.angle = angle;
+    function.min_size = min_size;
+    deref(field).add(std::move(function));
+    return 0;
+  });
+}
+
+int meshgrow_field_add_proximity(meshgrow_field* field, const int* sources, size_t sources_n,
+                                 const int* attach, size_t attach_n, double cells_per_gap,
+                                 double growth_rate, double size_limit, double min_size,
+                                 int between) {
+  return guarded(1, [&] {
+    if (between < MESHGROW_BETWEEN_AUTOMATIC || between > MESHGROW_BETWEEN_BOTH) {
+      throw Error("Gaps are between faces, edges or both: give one of MESHGROW_BETWEEN_….");
+    }
+    SizeFunction function = common(Kind::proximity, entities_of(sources, sources_n),
+                                   entities_of(attach, attach_n), growth_rate, size_limit);
+    function.cells_per_gap = cells_per_gap;
+    function.min_size = min_size;
+    function.between = static_cast<meshgrow::GapsBetween>(between);
+    deref(field).add(std::move(function));
+    return 0;
+  });
+}
+
+int meshgrow_field_create_defaults(meshgrow_field* field, const int* attach, size_t attach_n,
+                                   double growth_rate, double size_limit, double min_size) {
+  return guarded(1, [&] {
+    deref(field).create_defaults(entities_of(attach, attach_n), growth_rate, size_limit, min_size);
     return 0;
   });
 }

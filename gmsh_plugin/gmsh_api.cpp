@@ -82,13 +82,22 @@ std::vector<int> to_dim_tags(const std::vector<Entity>& entities) {
   return result;
 }
 
-Nodes get_nodes(int dim, int tag, bool parametric) {
+std::vector<Vec3> to_vectors(const std::vector<double>& flat) {
+  std::vector<Vec3> result;
+  result.reserve(flat.size() / 3);
+  for (std::size_t i = 0; i + 2 < flat.size(); i += 3) {
+    result.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  }
+  return result;
+}
+
+Nodes get_nodes(int dim, int tag, bool with_boundary, bool parametric) {
   GmshArray<std::size_t> tags;
   GmshArray<double> coordinates;
   GmshArray<double> parameters;
   library().call("gmshModelMeshGetNodes", tags.data(), tags.size(), coordinates.data(),
-                 coordinates.size(), parameters.data(), parameters.size(), dim, tag, 0,
-                 parametric ? 1 : 0);
+                 coordinates.size(), parameters.data(), parameters.size(), dim, tag,
+                 with_boundary ? 1 : 0, parametric ? 1 : 0);
   return {tags.copy(), coordinates.copy(), parameters.copy()};
 }
 
@@ -282,8 +291,11 @@ void set_visible(const std::vector<Entity>& entities, bool visible) {
   library().call("gmshModelSetVisibility", dim_tags.data(), dim_tags.size(), visible ? 1 : 0, 0);
 }
 
-Nodes nodes(const Entity& entity) { return get_nodes(entity.dim, entity.tag, true); }
-Nodes all_nodes() { return get_nodes(-1, -1, false); }
+Nodes nodes(const Entity& entity) { return get_nodes(entity.dim, entity.tag, false, true); }
+Nodes nodes_with_boundary(const Entity& entity) {
+  return get_nodes(entity.dim, entity.tag, true, true);
+}
+Nodes all_nodes() { return get_nodes(-1, -1, false, false); }
 
 void add_nodes(const Entity& entity, const Nodes& nodes) {
   library().call("gmshModelMeshAddNodes", entity.dim, entity.tag, nodes.tags.data(),
@@ -433,12 +445,23 @@ std::vector<Vec3> points_at(const Entity& entity, const std::vector<double>& par
   GmshArray<double> coordinates;
   library().call("gmshModelGetValue", entity.dim, entity.tag, parameters.data(), parameters.size(),
                  coordinates.data(), coordinates.size());
-  const std::vector<double> flat = coordinates.copy();
-  std::vector<Vec3> result;
-  for (std::size_t i = 0; i + 2 < flat.size(); i += 3) {
-    result.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
-  }
-  return result;
+  return to_vectors(coordinates.copy());
+}
+
+std::vector<Vec3> derivatives_at(const Entity& curve, const std::vector<double>& parameters) {
+  GmshArray<double> derivatives;
+  library().call("gmshModelGetDerivative", curve.dim, curve.tag, parameters.data(),
+                 parameters.size(), derivatives.data(), derivatives.size());
+  return to_vectors(derivatives.copy());
+}
+
+std::vector<double> parameters_on_surface(const Entity& curve,
+                                          const std::vector<double>& parameters,
+                                          const Entity& surface, bool other_side) {
+  GmshArray<double> result;
+  library().call("gmshModelReparametrizeOnSurface", curve.dim, curve.tag, parameters.data(),
+                 parameters.size(), surface.tag, result.data(), result.size(), other_side ? 1 : 0);
+  return result.copy();
 }
 
 std::vector<double> parameters_at(const Entity& entity, const std::vector<double>& coordinates) {
@@ -448,12 +471,11 @@ std::vector<double> parameters_at(const Entity& entity, const std::vector<double
   return parameters.copy();
 }
 
-Vec3 normal_at(const Entity& surface, const std::vector<double>& parameters) {
+std::vector<Vec3> normals_at(const Entity& surface, const std::vector<double>& parameters) {
   GmshArray<double> normals;
   library().call("gmshModelGetNormal", surface.tag, parameters.data(), parameters.size(),
                  normals.data(), normals.size());
-  const std::vector<double> normal = normals.copy();
-  return normal.size() < 3 ? Vec3::Zero() : Vec3(normal[0], normal[1], normal[2]);
+  return to_vectors(normals.copy());
 }
 
 bool is_inside(const Entity& surface, double u, double v) {

@@ -77,6 +77,9 @@ struct Nodes {
 
 /// Nodes classified on the entity, those of its boundary not included.
 Nodes nodes(const Entity& entity);
+/// The same with those of its boundary, all with parametric coordinates on the entity: on one side
+/// of a seam only.
+Nodes nodes_with_boundary(const Entity& entity);
 /// All nodes of the model, without parametric coordinates.
 Nodes all_nodes();
 void add_nodes(const Entity& entity, const Nodes& nodes);
@@ -129,8 +132,15 @@ std::vector<std::array<double, 2>> parameter_bounds(const Entity& entity);
 std::vector<Vec3> points_at(const Entity& entity, const std::vector<double>& parameters);
 /// Parameters of points (three coordinates each) on a curve (one each) or surface (two each).
 std::vector<double> parameters_at(const Entity& entity, const std::vector<double>& coordinates);
-/// Unit normal of a surface at two parameters.
-Vec3 normal_at(const Entity& surface, const std::vector<double>& parameters);
+/// Derivatives by the parameter of a curve at parameters.
+std::vector<Vec3> derivatives_at(const Entity& curve, const std::vector<double>& parameters);
+/// Parameters on a surface (two each) of a curve on its boundary at parameters; on the other side
+/// of a seam with `other_side`.
+std::vector<double> parameters_on_surface(const Entity& curve,
+                                          const std::vector<double>& parameters,
+                                          const Entity& surface, bool other_side);
+/// Unit normals of a surface at parameters, two each.
+std::vector<Vec3> normals_at(const Entity& surface, const std::vector<double>& parameters);
 /// Whether the surface's trimming curves enclose the parameters (u, v).
 bool is_inside(const Entity& surface, double u, double v);
 

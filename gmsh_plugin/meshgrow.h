@@ -54,6 +54,35 @@ MESHGROW_API int meshgrow_field_add_fixed(meshgrow_field* field, const int* sour
                                           size_t sources_n, const int* attach, size_t attach_n,
                                           double size, double growth_rate, double size_limit);
 
+/* The curvature of the sources (curves, surfaces; a volume stands for its faces, a surface in a
+ * model without volumes for its curves as well) grows likewise: an edge of an element may turn by
+ * `angle` degrees. Sizes below `min_size` >= 0 become `min_size`. */
+MESHGROW_API int meshgrow_field_add_curvature(meshgrow_field* field, const int* sources,
+                                              size_t sources_n, const int* attach, size_t attach_n,
+                                              double angle, double growth_rate, double size_limit,
+                                              double min_size);
+
+/* The gaps between the sources (curves, surfaces; a volume stands for its faces) and what is
+ * opposite, through the attachments, grow likewise: `cells_per_gap` > 0 elements fit into each.
+ * Gaps that ask for less than `min_size` >= 0 are ignored. */
+enum {
+  MESHGROW_BETWEEN_AUTOMATIC = 0, /* faces if a volume is attached and sources are not all curves */
+  MESHGROW_BETWEEN_FACES = 1,     /* of attached volumes */
+  MESHGROW_BETWEEN_EDGES = 2,     /* of surfaces, attached or on the boundary of attachments */
+  MESHGROW_BETWEEN_BOTH = 3
+};
+MESHGROW_API int meshgrow_field_add_proximity(meshgrow_field* field, const int* sources,
+                                              size_t sources_n, const int* attach, size_t attach_n,
+                                              double cells_per_gap, double growth_rate,
+                                              double size_limit, double min_size, int between);
+
+/* What suits most models: curvature (18 degrees) and, between faces and edges, proximity (3 cells)
+ * of the attachments themselves; of all entities of the model's highest dimension if there are
+ * none. */
+MESHGROW_API int meshgrow_field_create_defaults(meshgrow_field* field, const int* attach,
+                                                size_t attach_n, double growth_rate,
+                                                double size_limit, double min_size);
+
 /* A size function by its one-line text:
  * "mesh source Surface{7} attach Volume{2} growth 1.2 limit 2" */
 MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);

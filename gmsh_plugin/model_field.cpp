@@ -69,6 +69,27 @@ std::size_t ModelField::add(const std::string& text) {
   return add(parse_size_function(text, field_.topology()));
 }
 
+void ModelField::create_defaults(std::vector<Entity> attachments, double growth_rate,
+                                 double size_limit, double min_size) {
+  const Topology& topology = field_.topology();
+  for (int dim = 3; dim > 0 && attachments.empty(); --dim) {
+    attachments = topology.entities(dim);
+  }
+  SizeFunction function;
+  function.kind = Kind::curvature;
+  function.sources = attachments;
+  function.attachments = std::move(attachments);
+  function.growth_rate = growth_rate;
+  function.size_limit = size_limit;
+  function.min_size = min_size;
+  add(function);
+  function.kind = Kind::proximity;
+  function.between = GapsBetween::both;
+  if (!gap_regions(function, topology).empty()) {
+    add(std::move(function));
+  }
+}
+
 std::vector<FacetedSource> ModelField::read_meshed(std::size_t function,
                                                    const NodeCoordinates& nodes) const {
   std::vector<FacetedSource> result;
@@ -98,19 +119,54 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
   }
   size_factor_ = gmsh::option("Mesh.MeshSizeFactor");
   const NodeCoordinates nodes;
+  SourceFacets facets(field_.topology(), nodes);
   for (const std::size_t index : functions) {
-    const SizeFunction& function = field_.functions()[index];
-    std::vector<FacetedSource> sources = read_meshed(index, nodes);
-    if (function.kind == Kind::fixed) {
-      for (const Entity& source : function.sources) {
-        if (std::none_of(sources.begin(), sources.end(),
-                         [&source](const FacetedSource& read) { return read.entity == source; })) {
-          sources.push_back(sample_geometry(source, field_.topology(), function.start_size));
-        }
-      }
+    switch (field_.functions()[index].kind) {
+      case Kind::mesh:
+        set_sources(index, read_meshed(index, nodes));
+        break;
+      case Kind::fixed:
+        set_sources(index, read_fixed(index, nodes));
+        break;
+      case Kind::curvature:
+        read_curvature(index, facets);
+        break;
+      case Kind::proximity:
+        read_proximity(index, facets);
+        break;
     }
-    set_sources(index, sources);
   }
+}
+
+std::vector<FacetedSource> ModelField::read_fixed(std::size_t function,
+                                                  const NodeCoordinates& nodes) const {
+  const SizeFunction& definition = field_.functions()[function];
+  std::vector<FacetedSource> sources = read_meshed(function, nodes);
+  for (const Entity& source : definition.sources) {
+    if (std::none_of(sources.begin(), sources.end(),
+                     [&source](const FacetedSource& read) { return read.entity == source; })) {
+      sources.push_back(sample_geometry(source, field_.topology(), definition.start_size));
+    }
+  }
+  return sources;
+}
+
+void ModelField::read_curvature(std::size_t function, SourceFacets& facets) {
+  const SizeFunction& definition = field_.functions()[function];
+  std::vector<FacetedSource> sources;
+  for (const Entity& source : curvature_sources(definition, field_.topology())) {
+    sources.push_back(facets.with_curvature(source, definition));
+  }
+  set_sources(function, sources);
+}
+
+void ModelField::read_proximity(std::size_t function, SourceFacets& facets) {
+  std::vector<WalledRegion> regions;
+  for (GapRegion& gaps : gap_regions(field_.functions()[function], field_.topology())) {
+    std::vector<Wall> walls = facets.walls(gaps.region);
+    regions.push_back({std::move(gaps), std::move(walls)});
+  }
+  field_.set_regions(function, regions);
 }
 
 std::vector<Entity> ModelField::unmeshed_sources(std::size_t function) const {

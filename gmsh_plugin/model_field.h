@@ -14,6 +14,7 @@
 #include "size_answers.h"
 #include "size_callback.h"
 #include "size_field.h"
+#include "source_facets.h"
 
 namespace meshgrow {
 
@@ -30,6 +31,13 @@ class ModelField {
   std::size_t add(SizeFunction function);
   /// Adds a function by its one-line text (size_function_text.h).
   std::size_t add(const std::string& text);
+
+  /// Adds what suits most models: a curvature size function (18 degrees) and a proximity size
+  /// function (3 cells per gap, between faces and edges) whose sources are the attachments
+  /// themselves; all entities of the model's highest dimension if there are none. The second is
+  /// left out where there is no gap to measure.
+  void create_defaults(std::vector<Entity> attachments, double growth_rate, double size_limit,
+                       double min_size = 0.0);
 
   const std::string& model() const { return model_; }
   SizeField& field() { return field_; }
@@ -90,6 +98,9 @@ class ModelField {
   /// Gives these functions their sources as they are in the model now.
   void read_sources(const std::vector<std::size_t>& functions);
   std::vector<FacetedSource> read_meshed(std::size_t function, const NodeCoordinates& nodes) const;
+  std::vector<FacetedSource> read_fixed(std::size_t function, const NodeCoordinates& nodes) const;
+  void read_curvature(std::size_t function, SourceFacets& facets);
+  void read_proximity(std::size_t function, SourceFacets& facets);
   void set_sources(std::size_t function, const std::vector<FacetedSource>& sources);
 
   /// Within a run of Gmsh that has come to this dimension: reads the late sources of lower ones and

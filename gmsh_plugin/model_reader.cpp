@@ -122,28 +122,41 @@ ElementFamily element_family(const gmsh::ElementType& type) {
   return found == families.end() ? ElementFamily::unknown : found->second;
 }
 
-FacetedSource read_entity_mesh(const Entity& entity, const NodeCoordinates& nodes) {
-  FacetedSource source;
-  source.entity = entity;
+ElementCorners read_element_corners(const Entity& entity) {
+  ElementCorners corners;
   for (const gmsh::Elements& block : gmsh::elements(entity)) {
     const gmsh::ElementType type = known_type(block.type, entity);
     const ElementFamily family = element_family(type);
-    const auto corner = [&](std::size_t first, std::size_t i) {
-      return nodes.at(block.node_tags[first + i], entity);
-    };
     const auto step = static_cast<std::size_t>(type.node_count);
     for (std::size_t first = 0; first + step <= block.node_tags.size(); first += step) {
+      const std::size_t* tags = &block.node_tags[first];
       if (family == ElementFamily::line) {
-        source.segments.push_back({corner(first, 0), corner(first, 1)});
+        corners.segments.push_back({tags[0], tags[1]});
       } else if (family == ElementFamily::triangle) {
-        source.triangles.push_back({corner(first, 0), corner(first, 1), corner(first, 2)});
+        corners.triangles.push_back({tags[0], tags[1], tags[2]});
       } else if (family == ElementFamily::quad) {
-        source.quads.push_back(
-            {corner(first, 0), corner(first, 1), corner(first, 2), corner(first, 3)});
+        corners.quads.push_back({tags[0], tags[1], tags[2], tags[3]});
       } else {
         refuse_type(entity, type);
       }
     }
+  }
+  return corners;
+}
+
+FacetedSource read_entity_mesh(const Entity& entity, const NodeCoordinates& nodes) {
+  const ElementCorners corners = read_element_corners(entity);
+  FacetedSource source;
+  source.entity = entity;
+  const auto at = [&](std::size_t tag) { return nodes.at(tag, entity); };
+  for (const auto& [a, b] : corners.segments) {
+    source.segments.push_back({at(a), at(b)});
+  }
+  for (const auto& [a, b, c] : corners.triangles) {
+    source.triangles.push_back({at(a), at(b), at(c)});
+  }
+  for (const auto& [a, b, c, d] : corners.quads) {
+    source.quads.push_back({at(a), at(b), at(c), at(d)});
   }
   return source;
 }

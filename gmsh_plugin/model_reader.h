@@ -1,6 +1,7 @@
 #ifndef MESHGROW_MODEL_READER_H
 #define MESHGROW_MODEL_READER_H
 
+#include <array>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -36,9 +37,19 @@ class NodeCoordinates {
   std::unordered_map<std::size_t, std::size_t> index_of_;
 };
 
-/// The mesh of a curve or surface by corner nodes, whatever the order of its elements; empty if it
-/// has none. Throws Error that names entity and type for elements other than lines, triangles and
+/// Tags of the corner nodes of the elements of a curve or surface.
+struct ElementCorners {
+  std::vector<std::array<std::size_t, 2>> segments;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  std::vector<std::array<std::size_t, 4>> quads;
+};
+
+/// Throws Error that names entity and type for elements other than lines, triangles and
 /// quadrilaterals.
+ElementCorners read_element_corners(const Entity& entity);
+
+/// The mesh of a curve or surface by corner nodes, whatever the order of its elements; empty if it
+/// has none. Throws Error as read_element_corners.
 FacetedSource read_entity_mesh(const Entity& entity, const NodeCoordinates& nodes);
 
 /// The elements of these entities (all of one dimension, 2 or 3) for a report; all entities of the

@@ -95,9 +95,10 @@ bool is_against_normal(const Entity& surface, const std::vector<gmsh::Elements>&
     corner[i] = nodes.at(elements.front().node_tags[i], surface);
   }
   const Vec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
-  const Vec3 normal =
-      gmsh::normal_at(surface, gmsh::parameters_at(surface, {middle.x(), middle.y(), middle.z()}));
-  return (corner[1] - corner[0]).cross(corner[2] - corner[0]).dot(normal) < 0.0;
+  const std::vector<Vec3> normals =
+      gmsh::normals_at(surface, gmsh::parameters_at(surface, {middle.x(), middle.y(), middle.z()}));
+  return !normals.empty() &&
+         (corner[1] - corner[0]).cross(corner[2] - corner[0]).dot(normals.front()) < 0.0;
 }
 
 /// Whether the line elements run against the parameter of their curve.

@@ -87,6 +87,11 @@ FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::
   for (const std::string& text : texts) {
     check(meshgrow_field_add(field.get(), text.c_str()));
   }
+  if (arguments.defaults_limit != 0.0) {
+    constexpr double growth_rate = 1.2;
+    check(meshgrow_field_create_defaults(field.get(), nullptr, 0, growth_rate,
+                                         arguments.defaults_limit, 0.0));
+  }
   return field;
 }
 
@@ -173,7 +178,7 @@ void mesh(const MeshArguments& arguments, const FieldArguments& field_arguments)
   std::cout << "Reading " << arguments.model << std::endl;
   open_model(arguments.model);
   const FieldPointer field = make_field(field_arguments, texts);
-  if (texts.empty()) {
+  if (texts.empty() && field_arguments.defaults_limit == 0.0) {
     std::cout << "No size function is given: Gmsh's own sizes rule." << std::endl;
   }
   if (arguments.plan) {
@@ -207,7 +212,8 @@ void report(const ReportArguments& arguments, const FieldArguments& field_argume
   nlohmann::json rows = nlohmann::json::array();
   for (const std::string& file : arguments.meshes) {
     open_model(file);
-    const FieldPointer field = texts.empty() ? FieldPointer() : make_field(field_arguments, texts);
+    const bool has_functions = !texts.empty() || field_arguments.defaults_limit != 0.0;
+    const FieldPointer field = has_functions ? make_field(field_arguments, texts) : FieldPointer();
     std::vector<int> dim_tags;
     if (!arguments.entities.empty()) {
       for (const Entity& entity : parse_entities(arguments.entities, read_topology())) {

@@ -9,6 +9,7 @@ namespace meshgrow::cli {
 struct FieldArguments {
   std::vector<std::string> size_functions;
   std::string file;
+  double defaults_limit = 0.0;  ///< size limit of the default functions; 0: none of them
   double tolerance = 0.05;
   bool exact = false;
   bool strict = false;

@@ -12,7 +12,9 @@ int main(int argc, char** argv) {
       "Meshes Gmsh models with sizes that grow from what is meshed already.\n"
       "A size function is one line of text, for example\n"
       "  mesh  source Surface{7} attach Volume{2} growth 1.2 limit 2\n"
-      "  fixed source Curve{1,4} attach Physical Surface{\"inlet\"} size 0.1 growth 1.2 limit 2",
+      "  fixed source Curve{1,4} attach Physical Surface{\"inlet\"} size 0.1 growth 1.2 limit 2\n"
+      "  curvature source Volume{1} attach Volume{1} angle 18 growth 1.2 limit 2\n"
+      "  proximity source Volume{1} attach Volume{1} cells 3 growth 1.2 limit 2",
       "meshgrow");
   app.set_version_flag("--version", std::string("meshgrow ") + meshgrow_version());
   app.require_subcommand(1);
@@ -26,6 +28,11 @@ int main(int argc, char** argv) {
         ->allow_extra_args(false);
     command->add_option("--size-functions", field_arguments.file,
                         "A file of size functions, one a line; # begins a comment");
+    command
+        ->add_option("--defaults", field_arguments.defaults_limit,
+                     "Curvature (18 degrees) and proximity (3 cells per gap) of everything, "
+                     "growth 1.2, up to this size")
+        ->check(CLI::PositiveNumber);
     command
         ->add_option("--tolerance", field_arguments.tolerance,
                      "Relative tolerance of the background grid")

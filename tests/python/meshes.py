@@ -178,3 +178,46 @@ def assert_conforming_surfaces(*surfaces):
         on_curves = {c for b in boundary([surface]) for c in cells_of(b, ["Line"])}
         assert {side for side, count in sides.items() if count == 1} <= on_curves
         assert on_curves <= set(sides)
+
+
+def cells_along(entities, start, end):
+    """Elements (triangles in a plane z = const, or tetrahedra) along a line: its length over their
+    mean edge lengths, integrated."""
+    start = np.asarray(start, dtype=float)
+    way = np.asarray(end, dtype=float) - start
+    count = 0.0
+    for entity in entities:
+        dim = entity[0]
+        corner = corners(entity, "Tetrahedron" if dim == 3 else "Triangle")
+        edges = np.mean([np.linalg.norm(corner[:, i] - corner[:, j], axis=1)
+                         for i in range(dim + 1) for j in range(i)], axis=0)
+        inverse = np.linalg.inv(np.moveaxis(corner[:, 1:, :dim] - corner[:, :1, :dim], 1, 2))
+        # Barycentric coordinates are linear along the line: at + t * by.
+        at = np.einsum("nij,nj->ni", inverse, (start - corner[:, 0])[:, :dim])
+        by = np.einsum("nij,j->ni", inverse, way[:dim])
+        at = np.column_stack((1 - at.sum(axis=1), at))
+        by = np.column_stack((-by.sum(axis=1), by))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            zero = -at / by
+        enter = np.maximum(np.where(by > 0, zero, -np.inf).max(axis=1), 0)
+        leave = np.minimum(np.where(by < 0, zero, np.inf).min(axis=1), 1)
+        missed = ((by == 0) & (at < 0)).any(axis=1)
+        part = np.where(missed, 0, np.maximum(leave - enter, 0))
+        count += (part * np.linalg.norm(way) / edges).sum()
+    return count
+
+
+def everything_in_the_model():
+    """What a reader of the model must not change: entities, meshes, groups, models, options."""
+    option_names = ["Mesh.MeshSizeMin", "Mesh.MeshSizeMax", "Mesh.MeshSizeFactor", "Mesh.Algorithm",
+                    "Mesh.MeshSizeFromCurvature", "Mesh.MeshOnlyVisible", "Mesh.Renumber",
+                    "Mesh.ElementOrder", "Geometry.Tolerance", "Mesh.MeshSizeExtendFromBoundary"]
+    known = []
+    for name in option_names:
+        try:
+            known.append((name, gmsh.option.getNumber(name)))
+        except Exception:  # 4.8 calls some by other names
+            pass
+    entities = gmsh.model.getEntities()
+    return (entities, snapshots(entities), gmsh.model.getPhysicalGroups(), gmsh.model.list(),
+            gmsh.model.getCurrent(), known, [gmsh.model.getVisibility(*e) for e in entities])

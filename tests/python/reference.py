@@ -79,3 +79,21 @@ def quads_by_sides(corners):
 def sizes(facets, points, growth_rate, limit):
     """Minimum over several Facets."""
     return np.min([f.sizes(points, growth_rate, limit) for f in facets], axis=0)
+
+
+def curvature_size(curvature, angle):
+    """Chord of `angle` degrees of a circle of this curvature."""
+    return 2 * np.sin(np.radians(angle) / 2) / curvature
+
+
+def gap_size(gap, cells, growth_rate):
+    """Start size on both sides of a gap so that the integral of 1 / size across it is `cells`,
+    found by bisection of the numerical integral."""
+    slope = 1 - 1 / growth_rate
+    middles = (np.arange(2000) + 0.5) / 2000 * gap
+    low, high = 1e-9 * gap, gap / cells
+    for _ in range(60):
+        start = 0.5 * (low + high)
+        count = (gap / 2000 / (start + slope * np.minimum(middles, gap - middles))).sum()
+        low, high = (start, high) if count > cells else (low, start)
+    return start

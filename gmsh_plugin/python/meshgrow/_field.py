@@ -82,6 +82,45 @@ class SizeField:
             self._handle, *dim_tags(sources), *dim_tags(attach), size, growth_rate,
             _limit(size_limit)))
 
+    def add_curvature(self, sources, attach, angle=18, growth_rate=1.2, size_limit=None,
+                      min_size=0.0):
+        """The curvature of the sources (curves, surfaces) grows into the attachments.
+
+        An edge of an element may turn by ``angle`` degrees: the size is 2 sin(angle / 2) over the
+        largest curvature, but not below ``min_size``. A volume stands for its faces, a surface in a
+        model without volumes for its curves as well. Unmeshed sources are sampled, read only.
+        """
+        check(lib.meshgrow_field_add_curvature(
+            self._handle, *dim_tags(sources), *dim_tags(attach), angle, growth_rate,
+            _limit(size_limit), min_size))
+
+    def add_proximity(self, sources, attach, cells_per_gap=3, growth_rate=1.2, size_limit=None,
+                      min_size=0.0, between=None):
+        """The gaps between the sources and what is opposite grow into the attachments.
+
+        ``cells_per_gap`` (> 0, need not be whole) elements fit into each gap, measured through the
+        attachments: ``between`` ``"faces"`` of attached volumes, ``"edges"`` of surfaces (attached,
+        or bounding an attached volume) or ``"both"``. None takes faces if a volume is attached and
+        not all sources are curves, else edges. A volume stands for its faces. Gaps that ask for
+        less than ``min_size`` are ignored.
+        """
+        names = (None, "faces", "edges", "both")
+        if between not in names:
+            raise ValueError('between must be "faces", "edges", "both" or None, not %r'
+                             % (between,))
+        check(lib.meshgrow_field_add_proximity(
+            self._handle, *dim_tags(sources), *dim_tags(attach), cells_per_gap, growth_rate,
+            _limit(size_limit), min_size, names.index(between)))
+
+    def create_defaults(self, attach=None, growth_rate=1.2, size_limit=None, min_size=0.0):
+        """Adds what suits most models: curvature (18 degrees) and proximity (3 cells per gap,
+        between faces and edges) of the attachments themselves.
+
+        Without ``attach``, of all entities of the model's highest dimension.
+        """
+        check(lib.meshgrow_field_create_defaults(
+            self._handle, *dim_tags(attach or ()), growth_rate, _limit(size_limit), min_size))
+
     def add(self, text):
         """A size function by its line of text, the same as on the command line:
         ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``."""

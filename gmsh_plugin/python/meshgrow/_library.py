@@ -28,6 +28,12 @@ _SIGNATURES = {
         _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _INT]),
     "meshgrow_field_add_fixed": (
         _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "meshgrow_field_add_curvature": (
+        _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "meshgrow_field_add_proximity": (
+        _INT, [_FIELD, _INTS, _SIZE, _INTS, _SIZE, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE, _INT]),
+    "meshgrow_field_create_defaults": (
+        _INT, [_FIELD, _INTS, _SIZE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "meshgrow_field_add": (_INT, [_FIELD, ctypes.c_char_p]),
     "meshgrow_field_set_option": (_INT, [_FIELD, ctypes.c_char_p, _DOUBLE]),
     "meshgrow_field_set_progress": (_INT, [_FIELD, PROGRESS_LISTENER, ctypes.c_void_p]),
