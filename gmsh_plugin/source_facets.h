@@ -6,6 +6,7 @@
 
 #include "faceted_source.h"
 #include "model_reader.h"
+#include "shape_pieces.h"
 #include "shape_sampler.h"
 #include "size_field.h"
 
@@ -30,8 +31,8 @@ class SourceFacets {
   ShapeSampler& sampler(double max_turn);
   FacetedSource shape(const Entity& entity);
   FacetedSource meshed_with_curvature(const Entity& entity);
-  FacetedSource sampled_curve(const Entity& curve, const SizeFunction& function);
-  FacetedSource sampled_surface(const Entity& surface, const SizeFunction& function);
+  static FacetedSource sampled(const Entity& entity, std::vector<ShapePiece> pieces,
+                               const SizeFunction& function);
 
   const Topology& topology_;
   const NodeCoordinates& nodes_;

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <utility>
+
+#include "node_numbers.h"
 
 namespace meshgrow {
 namespace {
@@ -17,38 +18,16 @@ const double crease_cosine = std::cos(crease_angle * degree) - 1e-6;
 
 // ==== Points
 
-std::uint64_t mixed(std::uint64_t value) {
-  value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  value = (value ^ (value >> 27)) * 0x94d049bb133111ebULL;
-  return value ^ (value >> 31);
-}
-
-/// For each corner of all facets in turn, the first corner at the same coordinates.
+/// The number of the point at each corner of all facets in turn.
 template <std::size_t corner_count>
-std::vector<Index> shared_points(const std::vector<std::array<Vec3, corner_count>>& facets) {
-  const auto bits_of = [&](std::size_t corner) {
-    // Adding 0.0 makes -0.0 and 0.0 one.
-    const Vec3 point = facets[corner / corner_count][corner % corner_count] + Vec3::Zero();
-    std::array<std::uint64_t, 3> bits;
-    std::memcpy(bits.data(), point.data(), sizeof(bits));
-    return bits;
-  };
-  std::vector<Index> points(facets.size() * corner_count);
-  std::size_t slots = 16;
-  while (slots < 2 * points.size()) {
-    slots *= 2;
-  }
-  std::vector<Index> table(slots, none);
-  for (std::size_t corner = 0; corner < points.size(); ++corner) {
-    const auto bits = bits_of(corner);
-    std::size_t slot = mixed(bits[0] ^ mixed(bits[1] ^ mixed(bits[2]))) & (slots - 1);
-    while (table[slot] != none && bits_of(table[slot]) != bits) {
-      slot = (slot + 1) & (slots - 1);
+std::vector<Index> point_numbers(const std::vector<std::array<Vec3, corner_count>>& facets) {
+  NodeNumbers numbers;
+  std::vector<Index> points;
+  points.reserve(facets.size() * corner_count);
+  for (const auto& facet : facets) {
+    for (const Vec3& corner : facet) {
+      points.push_back(static_cast<Index>(numbers.of(corner)));
     }
-    if (table[slot] == none) {
-      table[slot] = static_cast<Index>(corner);
-    }
-    points[corner] = table[slot];
   }
   return points;
 }
@@ -89,7 +68,7 @@ struct Fan {
 class FacetedSurface {
  public:
   explicit FacetedSurface(const std::vector<std::array<Vec3, 3>>& triangles)
-      : triangles_(triangles), points_(shared_points(triangles)) {
+      : triangles_(triangles), points_(point_numbers(triangles)) {
     find_normals();
     find_smooth_edges();
     find_fans();
@@ -345,7 +324,7 @@ double FacetedSurface::curvature(std::size_t triangle) const {
 }  // namespace
 
 std::vector<double> segment_curvatures(const std::vector<std::array<Vec3, 2>>& segments) {
-  const std::vector<Index> points = shared_points(segments);
+  const std::vector<Index> points = point_numbers(segments);
   // End 2 s + i is end i of segment s.
   const auto away_from = [&](Index end) {
     return Vec3(segments[end / 2][1 - end % 2] - segments[end / 2][end % 2]);
