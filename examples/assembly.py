@@ -5,9 +5,7 @@ Fragmented, they share faces. The bolts get a fine fixed size. The plate and the
 later, share the bolts' faces: a mesh size function on those carries their fine mesh into the plates.
 """
 
-import gzip
 import os
-import sys
 
 import gmsh
 import meshgrow
@@ -19,27 +17,10 @@ BOLT_SIZE = 1.5 * COARSE  # millimetres
 GROWTH_RATE = 1.2
 SIZE_LIMIT = 15.0
 
-MODEL = "as1-tu-203.stp"
-PLACES = ("/usr/share/doc/gmsh-doc/doc/gmsh/demos/api/" + MODEL + ".gz",
-          os.path.join(sys.prefix, "share/doc/gmsh/examples/api", MODEL))
-
-
-def find_model():
-    """Path of the unpacked STEP file, from Debian's gmsh-doc or the PyPI wheel's examples."""
-    for place in PLACES:
-        if os.path.exists(place) and place.endswith(".gz"):
-            path = os.path.join(tools.OUT, MODEL)
-            with gzip.open(place) as packed, open(path, "wb") as plain:
-                plain.write(packed.read())
-            return path
-        if os.path.exists(place):
-            return place
-    sys.exit("error: %s was not found: install the Debian package gmsh-doc." % MODEL)
-
 
 def build_geometry():
     """Imports and fragments; returns the volumes (plates, bolts)."""
-    gmsh.model.occ.importShapes(find_model())
+    gmsh.model.occ.importShapes(tools.find_model("as1-tu-203.stp"))
     gmsh.model.occ.synchronize()
     names = {entity: gmsh.model.getEntityName(*entity) for entity in gmsh.model.getEntities(3)}
     gmsh.model.occ.fragment(gmsh.model.getEntities(3), [])

@@ -1,5 +1,6 @@
 """What the examples share: where results go, words on the terminal, pictures."""
 
+import gzip
 import os
 import subprocess
 import sys
@@ -10,6 +11,11 @@ import meshgrow
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 OUT = os.environ.get("MESHGROW_EXAMPLES_OUT", os.path.join(FOLDER, "out"))
+# Where the models of Gmsh's documentation are: in Debian's gmsh-doc (packed) or PyPI's wheel.
+MODEL_FOLDERS = [os.path.join("/usr/share/doc/gmsh-doc/doc/gmsh", name)
+                 for name in ("demos/api", "tutorial")]
+MODEL_FOLDERS += [os.path.join(sys.prefix, "share/doc/gmsh", name)
+                  for name in ("examples/api", "tutorials")]
 
 
 def start(name):
@@ -24,6 +30,20 @@ def start(name):
 def progress(line):
     """What a size field tells while it works."""
     print("   " + line, flush=True)
+
+
+def find_model(name):
+    """Path of a model of Gmsh's documentation, unpacked."""
+    for folder in MODEL_FOLDERS:
+        plain = os.path.join(folder, name)
+        if os.path.exists(plain):
+            return plain
+        if os.path.exists(plain + ".gz"):
+            unpacked = os.path.join(OUT, name)
+            with gzip.open(plain + ".gz") as source, open(unpacked, "wb") as target:
+                target.write(source.read())
+            return unpacked
+    sys.exit("error: %s was not found: install the Debian package gmsh-doc." % name)
 
 
 def boundary(entities):

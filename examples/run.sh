@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/setup.sh
 
-all=(figure8 assembly two_faces common_face)
+all=(figure8 assembly two_faces volume_in_volume real_parts)
 for example in "${@:-${all[@]}}"; do
   [ -e "examples/$example.py" ] || fail "there is no example '$example': give one of ${all[*]}."
   say "Running examples/$example.py"
