@@ -108,7 +108,7 @@ def test_two_dimensional_report(box, tmp_path):
      ["Surface 2", "source and attachment"]),
     ("fixed source Surface{2} attach Volume{2} size 0 growth 1.2 limit 1", ["'size'"]),
     ("mesh source Surface{2} attach Volume{2} grow 1.2 limit 1", ["position 41", "'growth'"]),
-    ("", ["'mesh' or 'fixed'"]),
+    ("", ["'mesh', 'fixed', 'curvature' or 'proximity'"]),
 ])
 def test_bad_size_function_is_refused_and_nothing_is_written_over(box, tmp_path, function, words):
     out = tmp_path / "out.msh"
