@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "error.h"
@@ -43,6 +44,43 @@ std::vector<std::vector<Vec3>> directions_along(const Entity& curve,
     }
   }
   return result;
+}
+
+/// On a round surface that is cut off at its seam, Gmsh has some borders a full turn away from the
+/// others. These are turned back.
+void turn_into_range(const Entity& surface, std::vector<double>& uv) {
+  constexpr double tolerance = 1e-3;  // in parts of the range
+  const double full_turn = 2.0 * std::acos(-1.0);
+  const auto bounds = gmsh::parameter_bounds(surface);
+  for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
+    const auto [low, high] = bounds[axis];
+    const double margin = tolerance * (high - low);
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t i = axis; i < uv.size(); i += 2) {
+      least = std::min(least, uv[i]);
+      most = std::max(most, uv[i]);
+    }
+    const double turn = most > high + margin ? -full_turn : least < low - margin ? full_turn : 0.0;
+    if (turn == 0.0 || least + turn < low - margin || most + turn > high + margin) {
+      continue;
+    }
+    std::vector<double> turned = uv;
+    for (std::size_t i = axis; i < uv.size(); i += 2) {
+      turned[i] += turn;
+    }
+    const std::vector<Vec3> here = gmsh::points_at(surface, uv);
+    const std::vector<Vec3> there = gmsh::points_at(surface, turned);
+    double apart = 0.0;
+    double scale = 0.0;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      apart = std::max(apart, (there[i] - here[i]).norm());
+      scale = std::max(scale, here[i].norm());
+    }
+    if (apart <= 1e-6 * scale) {  // else the surface is not round this way
+      uv = std::move(turned);
+    }
+  }
 }
 
 }  // namespace
@@ -154,8 +192,10 @@ std::vector<CurveOnSurface> ShapeSampler::curves_on(const Entity& surface) {
   for (const Entity& border : gmsh::boundary(surface)) {
     const bool other_side = !met.insert(border).second;
     const SampledCurve& sampled = curve(border);
-    curves.push_back({gmsh::parameters_on_surface(border, sampled.parameters, surface, other_side),
-                      sampled.points, true});
+    std::vector<double> uv =
+        gmsh::parameters_on_surface(border, sampled.parameters, surface, other_side);
+    turn_into_range(surface, uv);
+    curves.push_back({std::move(uv), sampled.points, true});
   }
   for (const Entity& embedded : gmsh::embedded(surface)) {
     if (embedded.dim == 1) {

@@ -125,6 +125,9 @@ ShapeSampler& SourceFacets::sampler(double max_turn) {
 }
 
 FacetedSource SourceFacets::with_curvature(const Entity& entity, const SizeFunction& function) {
+  if (entity.dim == 1 && has_no_length(entity, topology_)) {
+    return faceted_source(entity, {});  // the pole of a sphere, which has no curvature as a curve
+  }
   if (gmsh::has_elements(entity)) {
     return meshed_with_curvature(entity);
   }

@@ -164,29 +164,47 @@ void SurfaceTriangulator::add_inner_points(const std::vector<double>& uv) {
   }
 }
 
+bool SurfaceTriangulator::is_tilted(const std::array<std::size_t, 3>& triangle) const {
+  // A long and narrow facet across a bend may lie askew though the normals at its corners agree.
+  const auto& [a, b, c] = triangle;
+  const std::vector<Vec3>& points = sampled_.points;
+  const double turn = turn_between((points[b] - points[a]).cross(points[c] - points[a]),
+                                   normals_[a] + normals_[b] + normals_[c]);
+  return std::min(turn, 180.0 - turn) > max_turn_;
+}
+
 std::vector<double> SurfaceTriangulator::points_wanted() const {
-  std::set<std::array<std::size_t, 2>> edges;
+  std::set<Side> sides;
   for (const auto& triangle : triangulation_->inner_triangles()) {
-    double worst_turn = max_turn_;
-    std::array<std::size_t, 2> worst = {0, 0};
+    Side most_turned = {0, 0};
+    Side longest = {0, 0};
+    double most_turn = max_turn_;
+    double length = smallest_side_;
     for (int i = 0; i < 3; ++i) {
       const std::size_t a = std::min(triangle[i], triangle[(i + 1) % 3]);
       const std::size_t b = std::max(triangle[i], triangle[(i + 1) % 3]);
+      const double side = (sampled_.points[a] - sampled_.points[b]).norm();
+      if (side > length) {
+        length = side;
+        longest = {a, b};
+      }
       const double turn = turn_between(normals_[a], normals_[b]);
-      if (turn > worst_turn && (sampled_.points[a] - sampled_.points[b]).norm() > smallest_side_ &&
-          !triangulation_->is_on_segment(a, b)) {
-        worst_turn = turn;
-        worst = {a, b};
+      if (turn > most_turn && side > smallest_side_ && !triangulation_->is_on_segment(a, b)) {
+        most_turn = turn;
+        most_turned = {a, b};
       }
     }
-    if (worst[0] != worst[1]) {
-      edges.insert(worst);
+    if (most_turned[0] != most_turned[1]) {
+      sides.insert(most_turned);
+    } else if (longest[0] != longest[1] && is_tilted(triangle) &&
+               !triangulation_->is_on_segment(longest[0], longest[1])) {
+      sides.insert(longest);
     }
   }
   std::vector<double> uv;
-  for (const auto& edge : edges) {
+  for (const Side& side : sides) {
     for (int i = 0; i < 2; ++i) {
-      uv.push_back(0.5 * (sampled_.parameters[edge[0]][i] + sampled_.parameters[edge[1]][i]));
+      uv.push_back(0.5 * (sampled_.parameters[side[0]][i] + sampled_.parameters[side[1]][i]));
     }
   }
   return uv;

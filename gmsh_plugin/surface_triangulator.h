@@ -31,6 +31,7 @@ class SurfaceTriangulator {
 
  private:
   using Point = PlanarTriangulation::Point;
+  using Side = std::array<std::size_t, 2>;
 
   void measure_range(const std::vector<CurveOnSurface>& curves);
   void measure_stretch();
@@ -41,6 +42,7 @@ class SurfaceTriangulator {
   std::size_t end_vertex(double u, double v, const Vec3& point, const Vec3& normal);
   std::vector<std::size_t> vertices_of(const CurveOnSurface& curve);
   void add_inner_points(const std::vector<double>& uv);
+  bool is_tilted(const std::array<std::size_t, 3>& triangle) const;
   std::vector<double> points_wanted() const;
 
   Entity surface_;

@@ -61,6 +61,19 @@ bool may_oppose(const Vec3& normal, const Box& normals) {
   return least <= -cosine_of_opposing + 1e-6;
 }
 
+/// Whether a way to a point of a ball, from outside, may be square to a wall with one of the
+/// normals in the box.
+bool may_be_square(const Vec3& way_to_centre, double radius, const Box& normals) {
+  const double distance = way_to_centre.norm();
+  if (radius > 0.5 * distance) {
+    return true;
+  }
+  // As unit vectors, ways differ by 2 sin(asin(r / d) / 2) at most, which is below 1.04 r / d.
+  const double spread = 1.04 * radius / distance + 0.5 * normals.diagonal().norm();
+  return -way_to_centre.dot(normals.center()) + (spread + 1e-9) * distance >=
+         GapFinder::cosine_of_square * distance;
+}
+
 /// Heights of a facet's corners above a plane.
 struct Heights {
   double lowest = FacetTree::infinity;
@@ -110,6 +123,9 @@ struct GapFinder::Place {
   Vec3 normal;
   Vec3 centre;
   double radius;
+  /// Only what is so far away, and seen by a way square to it, is looked for.
+  double nearest = 0.0;
+  bool is_square = false;
 
   /// Distance from the centre to the box, or infinity if no point of the ball sees any point of the
   /// box within 45° of the normal.
@@ -201,7 +217,16 @@ double GapFinder::least_opposing(const Bundle& bundle, const Place& place, doubl
   bundle.tree.closest_facet(
       within,
       [&](std::size_t node, const Box& box) {
-        return may_oppose(place.normal, bundle.normals[node]) ? turned.distance_to(box) : infinity;
+        if (!may_oppose(place.normal, bundle.normals[node])) {
+          return infinity;
+        }
+        const Vec3 way = box.center() - turned.centre;
+        if ((way.cwiseAbs() + 0.5 * box.sizes()).norm() < place.nearest ||
+            (place.is_square && !may_be_square(bundle.frame.transpose() * way,
+                                               0.5 * box.sizes().norm(), bundle.normals[node]))) {
+          return infinity;
+        }
+        return turned.distance_to(box);
       },
       [&](std::uint32_t i) {
         if (!normals_oppose(place.normal, bundle.inward[i])) {
@@ -261,24 +286,25 @@ double GapFinder::closest_gap(const Wall& wall, const Vec3& p, const Meetings& m
   // Behind a body that is in the way there may be any number of walls.
   constexpr int most_hidden = 256;
   int hidden = 0;
+  const double nearest = std::max(scale * inner, zero_);
   const auto faces = [&](const Opposite& opposite) {
     const Vec3 way = opposite.closest - p;
-    return opposite.distance >= std::max(scale * inner, zero_) &&
+    return opposite.distance >= nearest &&
            wall.inward.dot(way) >= cosine_of_opposing * opposite.distance &&
            -walls_[opposite.wall].inward.dot(way) >= cosine_of_square * opposite.distance &&
            !touches(meetings, opposite.wall, opposite.closest);
   };
-  const double least =
-      least_opposing({wall.inward, p, 0.0}, scale * outer, [&](const Opposite& opposite) {
-        if (hidden >= most_hidden || !faces(opposite)) {
-          return infinity;
-        }
-        if (!sees(wall, p, opposite.closest)) {
-          ++hidden;
-          return infinity;
-        }
-        return scale * opposite.distance;
-      });
+  const double least = least_opposing({wall.inward, p, 0.0, nearest, true}, scale * outer,
+                                      [&](const Opposite& opposite) {
+                                        if (hidden >= most_hidden || !faces(opposite)) {
+                                          return infinity;
+                                        }
+                                        if (!sees(wall, p, opposite.closest)) {
+                                          ++hidden;
+                                          return infinity;
+                                        }
+                                        return scale * opposite.distance;
+                                      });
   return least / scale;
 }
 

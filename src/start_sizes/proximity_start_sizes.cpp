@@ -20,6 +20,10 @@ constexpr double small_piece = 0.25;
 /// How much the gaps at the corners and the centre of a larger piece may differ.
 constexpr double same_gap = 0.05;
 
+/// Walls this close, in parts of the extent of all, are in contact: as where a ball lies on a
+/// plane, which may meet in no node. Any smaller size would be of no use to a mesher.
+constexpr double contact = 1e-5;
+
 /// Looked at, of a piece as large as the size limit; what is left then is measured as it is.
 constexpr std::size_t most_pieces = 4096;
 
@@ -55,11 +59,12 @@ std::array<Facet, 2> bisect(const Facet& piece) {
 /// Cuts one wall at a time into pieces with start sizes.
 class WallSizer {
  public:
-  WallSizer(const GapFinder& finder, const ProximityParameters& parameters)
+  WallSizer(const GapFinder& finder, const ProximityParameters& parameters, double extent)
       : finder_(finder),
         parameters_(parameters),
         size_of_unit_gap_(gap_start_size(1.0, parameters.cells_per_gap, parameters.growth_rate)),
         reach_(parameters.size_limit / size_of_unit_gap_),
+        least_gap_(std::max(parameters.min_size / size_of_unit_gap_, contact * extent)),
         slope_(growth_slope(parameters.growth_rate)) {}
 
   void append(const Wall& wall, std::size_t index, SizedFacets& facets) const {
@@ -83,7 +88,8 @@ class WallSizer {
     std::vector<Facet> pieces{base};
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const Facet piece = pieces[i];
-      if (i >= most_pieces || !finder_.is_faced(piece, wall, radius(piece) / small_piece)) {
+      if (i >= most_pieces || radius(piece) < small_piece * least_gap_ ||
+          !finder_.is_faced(piece, wall, radius(piece) / small_piece)) {
         append_facet(piece, finder_.gap(wall, piece.centroid(), reach_), facets);
         continue;
       }
@@ -126,7 +132,7 @@ class WallSizer {
 
   void append_facet(const Facet& piece, double gap, SizedFacets& facets) const {
     const double size = gap * size_of_unit_gap_;
-    if (size > 0.0 && size < parameters_.size_limit && size >= parameters_.min_size) {
+    if (gap >= least_gap_ && size < parameters_.size_limit) {
       facets.push_back({piece, size, slope_});
     }
   }
@@ -134,7 +140,8 @@ class WallSizer {
   const GapFinder& finder_;
   const ProximityParameters& parameters_;
   double size_of_unit_gap_;
-  double reach_;  ///< gap whose start size is the size limit
+  double reach_;      ///< gap whose start size is the size limit
+  double least_gap_;  ///< narrower ones are ignored
   double slope_;
 };
 
@@ -157,7 +164,11 @@ void append_proximity_start_sizes(const std::vector<Wall>& walls, const std::set
     return;
   }
   const GapFinder finder(walls, parameters.size_limit);
-  const WallSizer sizer(finder, parameters);
+  Box box;
+  for (const Wall& wall : walls) {
+    box.extend(wall.facet.box());
+  }
+  const WallSizer sizer(finder, parameters, box.diagonal().norm());
   std::vector<SizedFacets> found((chosen.size() + walls_per_chunk - 1) / walls_per_chunk);
   parallel_for(found.size(), parameters.threads, [&](std::size_t chunk) {
     const std::size_t first = chunk * walls_per_chunk;

@@ -198,6 +198,13 @@ const std::vector<Solid>& solids() {
        48.0 - 2.0 * pi + 2.0 * pi},
       // A quarter of a sphere: two poles, two seams that are edges.
       {"Sphere(1) = {0,0,0, 1, 0, Pi/2, Pi/2};", 0.5 * pi + 0.75 * pi},
+      // Cut off at their seams.
+      {"Sphere(1) = {0,0,0, 1}; Box(2) = {0,0,0, 2,2,2}; "
+       "BooleanIntersection{Volume{1}; Delete;}{Volume{2}; Delete;}",
+       0.5 * pi + 0.75 * pi},
+      {"Torus(1) = {0,0,0, 1, 0.2}; Box(2) = {0,0,-1, 3,3,2}; "
+       "BooleanDifference{Volume{1}; Delete;}{Volume{2}; Delete;}",
+       0.75 * 4.0 * pi * pi * 0.2 + 2.0 * pi * 0.04},
       {"Box(1) = {0,0,0, 2,2,2}; Fillet{1}{1,2,3,4,5,6,7,8,9,10,11,12}{0.5}",
        6.0 + 12.0 * 0.25 * pi + pi},
   };
@@ -250,6 +257,42 @@ TEST_F(SourceFacetsOf, FacetsTurnByNoMoreThanTheAngle) {
   }
 }
 
+TEST_F(SourceFacetsOf, FacetsDoNotLieAskew) {
+  // Long ones across the bend of a pipe would, though the normals at their corners agree.
+  const Topology topology = model(
+      "SetFactory(\"OpenCASCADE\"); Point(1) = {1,0,0}; Point(2) = {0.54,0.84,0.3}; "
+      "Point(3) = {-0.42,0.91,0.6}; Point(4) = {-0.99,0.14,0.9}; Point(5) = {-0.65,-0.76,1.2}; "
+      "Spline(1) = {1,2,3,4,5}; Wire(1) = {1}; Disk(1) = {1,0,0, 0.1}; "
+      "Rotate{{1,0,0}, {1,0,0}, Pi/2}{Surface{1};} "
+      "Extrude{Surface{1};} Using Wire {1}");
+  double area = 0.0;
+  double area_askew = 0.0;
+  for (const Entity& surface : topology.entities(2)) {
+    const auto sampled = ShapeSampler(topology, 6.0).surface(surface);
+    ASSERT_TRUE(sampled) << entity_name(surface);
+    std::vector<double> centres;
+    for (const auto& triangle : sampled->triangles) {
+      for (int axis = 0; axis < 2; ++axis) {
+        double sum = 0.0;
+        for (const std::size_t corner : triangle) {
+          sum += sampled->parameters[corner][axis];
+        }
+        centres.push_back(sum / 3.0);
+      }
+    }
+    const std::vector<Vec3> normals = gmsh::normals_at(surface, centres);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const auto& [a, b, c] = sampled->triangles[i];
+      const Vec3& corner = sampled->points[a];
+      const Vec3 normal = (sampled->points[b] - corner).cross(sampled->points[c] - corner);
+      const double turn = turn_between(normal, normals[i]);
+      area += normal.norm();
+      area_askew += std::min(turn, 180.0 - turn) > 9.0 ? normal.norm() : 0.0;
+    }
+  }
+  EXPECT_LE(area_askew, 0.003 * area) << area_askew / area;
+}
+
 TEST_F(SourceFacetsOf, EmbeddedCurvesAreSidesOfFacets) {
   const Topology topology = model(
       "Point(1) = {0,0,0}; Point(2) = {4,0,0}; Point(3) = {4,4,0}; Point(4) = {0,4,0}; "
@@ -263,6 +306,20 @@ TEST_F(SourceFacetsOf, EmbeddedCurvesAreSidesOfFacets) {
     looking_at_the_embedded_curve += wall.entity == Entity{1, 5} ? 1 : 0;
   }
   EXPECT_EQ(looking_at_the_embedded_curve, 2) << "one from each side";
+}
+
+TEST_F(SourceFacetsOf, PoleOfASphereHasNoCurvatureAsACurve) {
+  const Topology topology = model("SetFactory(\"OpenCASCADE\"); Sphere(1) = {0,0,0,1};");
+  const NodeCoordinates nodes;
+  SourceFacets facets(topology, nodes);
+  int poles = 0;
+  for (const Entity& curve : topology.entities(1)) {
+    if (gmsh::entity_type(curve) != "Circle") {
+      ++poles;
+      EXPECT_TRUE(facets.with_curvature(curve, curvature_function()).empty());
+    }
+  }
+  EXPECT_EQ(poles, 2);
 }
 
 TEST_F(SourceFacetsOf, SeamsAreNoWalls) {

@@ -100,6 +100,18 @@ def test_nothing_in_the_model_changes():
     assert everything_in_the_model() == before
 
 
+def test_pole_of_a_spherical_shell_has_no_curvature_of_its_own():
+    """In a model without volumes a surface stands for its curves as well, also those of no length."""
+    models.start("shell")
+    gmsh.model.occ.addSphere(0, 0, 0, 1)
+    gmsh.model.occ.synchronize()
+    gmsh.model.occ.remove([(3, 1)])
+    gmsh.model.occ.synchronize()
+    field = curvature_field([(2, 1)], [(2, 1)], size_limit=0.4)
+    np.testing.assert_allclose(field.exact_size(2, 1, [[0, 0, 1], [0, 0, -1], [1, 0, 0]]),
+                               curvature_size(1, ANGLE), rtol=0.02)
+
+
 # ==== From a mesh of the geometry
 
 

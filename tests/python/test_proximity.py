@@ -165,6 +165,37 @@ def test_gap_of_a_wedge_follows_its_width_and_ends_near_the_tip():
     assert smallest > 0.6 * gap_size(limit * math.sin(DEGREES_10), CELLS, GROWTH)
 
 
+def test_contact_without_a_common_node_is_no_gap():
+    """A ball that lies on the floor: sizes do not go to nothing where they touch."""
+    def ball_on_the_floor(occ):
+        occ.cut([(3, occ.addBox(-2, -2, 0, 4, 4, 4))], [(3, occ.addSphere(0, 0, 1, 1))])
+    volume = volume_of(ball_on_the_floor)
+    field = proximity_field([volume], [volume], min_size=0.02)
+    assert field.exact_size(*volume, [[0, 0, 0], [0.3, 0, 0]]).min() >= 0.02 * 0.99
+
+
+def test_pipe_along_a_spline():
+    models.start("pipe")
+    occ = gmsh.model.occ
+    points = [occ.addPoint(math.cos(t), math.sin(t), 0.3 * t) for t in np.linspace(0, 4, 9)]
+    wire = occ.addWire([occ.addSpline(points)])
+    disk = [(2, occ.addDisk(1, 0, 0, 0.1, 0.1))]
+    occ.rotate(disk, 1, 0, 0, 1, 0, 0, math.pi / 2)
+    occ.addPipe(disk, wire)
+    occ.remove(disk)
+    occ.synchronize()
+    volume = gmsh.model.getEntities(3)[0]
+    side = next(f for f in models.faces_of(volume[1]) if gmsh.model.getType(*f) != "Plane")
+    low, high = gmsh.model.getParametrizationBounds(*side)
+    at = np.random.default_rng(2).uniform(low, high, (400, 2))
+    walls = np.reshape(gmsh.model.getValue(*side, at.ravel()), (-1, 3))
+    field = proximity_field([volume], [volume], size_limit=0.8, between="faces")
+    sizes = field.exact_size(*volume, walls)
+    # The disk is a little oblique to the spline, so that the pipe is not quite round.
+    assert sizes.min() > 0.85 * gap_size(0.2, CELLS, GROWTH)
+    assert np.median(sizes) == pytest.approx(gap_size(0.2, CELLS, GROWTH), rel=0.07)
+
+
 def test_inner_corner_of_a_right_angle_is_no_gap():
     def corner(occ):
         occ.cut([(3, occ.addBox(0, 0, 0, 9, 9, 9))], [(3, occ.addBox(3, 3, -1, 9, 9, 20))])
