@@ -43,8 +43,6 @@ class ShapeSampler {
   /// None if the parametrisation or the trimming curves are not what they should be.
   std::optional<SampledSurface> surface(const Entity& surface);
 
-  double max_turn() const { return max_turn_; }
-
  private:
   Vec3 end_point(const Entity& curve, const Vec3& computed) const;
   std::vector<CurveOnSurface> curves_on(const Entity& surface);

@@ -49,8 +49,8 @@ struct SizeFunction {
                           ///< ask for less are ignored
 };
 
-/// The sources of a curvature size function, or of another that takes curves and surfaces: volumes
-/// stand for their faces, and surfaces, in models without volumes, for their curves as well.
+/// The curves and surfaces that a curvature size function measures: volumes stand for their faces,
+/// and surfaces, in models without volumes, for their curves as well.
 std::set<Entity> curvature_sources(const SizeFunction& function, const Topology& topology);
 
 /// An attached volume in which a proximity size function measures gaps between faces, or a surface
