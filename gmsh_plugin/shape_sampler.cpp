@@ -88,13 +88,14 @@ void turn_into_range(const Entity& surface, std::vector<double>& uv) {
 std::vector<Vec3> normals_along(const Entity& surface, const std::vector<double>& uv,
                                 const std::vector<Vec3>& points) {
   constexpr double inwards = 0.001;  // in parts of the range
+  if (!is_one_point(points)) {
+    return gmsh::normals_at(surface, uv);
+  }
   const auto bounds = gmsh::parameter_bounds(surface);
   std::vector<double> at = uv;
-  if (is_one_point(points) && bounds.size() == 2) {
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto [low, high] = bounds[i % 2];
-      at[i] += inwards * (0.5 * (low + high) - at[i]);
-    }
+  for (std::size_t i = 0; i < at.size() && bounds.size() == 2; ++i) {
+    const auto [low, high] = bounds[i % 2];
+    at[i] += inwards * (0.5 * (low + high) - at[i]);
   }
   return gmsh::normals_at(surface, at);
 }

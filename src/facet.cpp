@@ -98,6 +98,15 @@ Vec3 Facet::centroid() const {
   return sum / corner_count;
 }
 
+double Facet::radius() const {
+  const Vec3 centre = centroid();
+  double radius = 0.0;
+  for (int i = 0; i < corner_count; ++i) {
+    radius = std::max(radius, (corners[i] - centre).norm());
+  }
+  return radius;
+}
+
 Vec3 closest_point(const Facet& facet, const Vec3& p) {
   const auto& [a, b, c] = facet.corners;
   switch (facet.corner_count) {

@@ -23,6 +23,8 @@ struct Facet {
 
   Box box() const;
   Vec3 centroid() const;
+  /// Largest distance of a corner from the centroid.
+  double radius() const;
 };
 
 /// The point of the facet closest to p. Always lies on the facet up to rounding, so the distance to

@@ -353,10 +353,7 @@ bool GapFinder::sees_past_segments(const Vec3& p, const Vec3& q) const {
 
 GapFinder::View GapFinder::view_of(const Facet& piece, std::size_t wall) const {
   const Vec3 centre = piece.centroid();
-  double radius = 0.0;
-  for (const Vec3& corner : piece.corners) {
-    radius = std::max(radius, (corner - centre).norm());
-  }
+  const double radius = piece.radius();
   return {piece,
           {walls_[wall].inward, centre, radius},
           meetings_.near(wall, centre, touching_scale_ - radius)};

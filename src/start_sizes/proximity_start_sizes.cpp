@@ -74,7 +74,7 @@ class WallSizer {
       pieces.pop_back();
       if (LongestSide(piece).length <= parameters_.size_limit) {
         append_base_piece(piece, index, facets);
-      } else if (finder_.is_faced(piece, index, reach_ + radius(piece))) {
+      } else if (finder_.is_faced(piece, index, reach_ + piece.radius())) {
         for (const Facet& half : bisect(piece)) {
           pieces.push_back(half);
         }
@@ -88,8 +88,8 @@ class WallSizer {
     std::vector<Facet> pieces{base};
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const Facet piece = pieces[i];
-      if (i >= most_pieces || radius(piece) < small_piece * least_gap_ ||
-          !finder_.is_faced(piece, wall, radius(piece) / small_piece)) {
+      if (i >= most_pieces || piece.radius() < small_piece * least_gap_ ||
+          !finder_.is_faced(piece, wall, piece.radius() / small_piece)) {
         append_facet(piece, finder_.gap(wall, piece.centroid(), reach_), facets);
         continue;
       }
@@ -102,15 +102,6 @@ class WallSizer {
         }
       }
     }
-  }
-
-  static double radius(const Facet& piece) {
-    const Vec3 centre = piece.centroid();
-    double radius = 0.0;
-    for (const Vec3& corner : piece.corners) {
-      radius = std::max(radius, (corner - centre).norm());
-    }
-    return radius;
   }
 
   /// The smallest gap of the piece if it has about the same gap everywhere, else infinity.
