@@ -1,72 +1,48 @@
 #include "facet_tree.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
-#include <numeric>
 
 #include "error.h"
+#include "parallel.h"
 
 namespace meshgrow {
 
 namespace {
 
-constexpr std::uint32_t facets_per_leaf = 4;
+/// Of sizes in float, generously.
+constexpr double relative_rounding = 4e-6;
+
+/// In units of the tree. Squares of what is farther may not be finite in float.
+constexpr double farthest_for_float = 1e15;
 
 }  // namespace
 
-FacetTree::FacetTree(SizedFacets facets) {
+FacetTree::FacetTree(SizedFacets facets, int threads) {
   if (facets.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
     throw Error("A size function has more than 2 billion facets: split its sources.");
   }
   if (facets.empty()) {
     return;
   }
-  std::vector<Vec3> centroids;
-  centroids.reserve(facets.size());
-  for (const SizedFacet& facet : facets) {
-    centroids.push_back(facet.facet.centroid());
-  }
-  original_index_.resize(facets.size());
-  std::iota(original_index_.begin(), original_index_.end(), 0U);
-  nodes_.reserve(facets.size());
-  nodes_.emplace_back();
-  build(0, 0, static_cast<std::uint32_t>(facets.size()), facets, centroids);
-  nodes_.shrink_to_fit();
-  facets_.reserve(facets.size());
-  for (const std::uint32_t original : original_index_) {
-    facets_.push_back(facets[original]);
+  layout_ = layout_tree(facets, threads);
+  facets_.resize(facets.size());
+  constexpr std::size_t chunk = 1 << 14;
+  parallel_for((facets.size() + chunk - 1) / chunk, threads, [&](std::size_t c) {
+    for (std::size_t i = c * chunk; i < std::min(facets.size(), (c + 1) * chunk); ++i) {
+      facets_[i] = facets[layout_.order[i]];
+    }
+  });
+  for (const SizedFacet& facet : facets_) {
+    largest_slope_ = std::max(largest_slope_, facet.slope);
   }
 }
 
-void FacetTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t count,
-                      const SizedFacets& facets, const std::vector<Vec3>& centroids) {
-  Box box;
-  Box centroid_box;
-  double min_start_size = infinity;
-  double min_slope = infinity;
-  const auto begin = original_index_.begin() + first;
-  for (auto i = begin; i != begin + count; ++i) {
-    box.extend(facets[*i].facet.box());
-    centroid_box.extend(centroids[*i]);
-    min_start_size = std::min(min_start_size, facets[*i].start_size);
-    min_slope = std::min(min_slope, facets[*i].slope);
-  }
-  if (count <= facets_per_leaf) {
-    nodes_[node] = {box, min_start_size, min_slope, first, count};
-    return;
-  }
-  const auto children = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node] = {box, min_start_size, min_slope, children, 0};
-  nodes_.resize(nodes_.size() + 2);
-  int axis = 0;
-  centroid_box.sizes().maxCoeff(&axis);
-  const std::uint32_t half = count / 2;
-  std::nth_element(begin, begin + half, begin + count,
-                   [axis, &centroids](std::uint32_t a, std::uint32_t b) {
-                     return centroids[a][axis] < centroids[b][axis];
-                   });
-  build(children, first, half, facets, centroids);
-  build(children + 1, first + half, count - half, facets, centroids);
+Box FacetTree::child_box(const simd::WideNode& node, int lane) const {
+  const Vec3 lower(node.lower[0][lane], node.lower[1][lane], node.lower[2][lane]);
+  const Vec3 upper(node.upper[0][lane], node.upper[1][lane], node.upper[2][lane]);
+  return Box(layout_.centre + layout_.unit * lower, layout_.centre + layout_.unit * upper);
 }
 
 double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inverse_direction) {
@@ -88,12 +64,90 @@ double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inv
   return enter <= leave * (1.0 + 1e-12) ? enter : infinity;
 }
 
+// ==== Sizes
+
+/// One search: takes candidates from the kernel and decides in double.
+struct FacetTree::Search {
+  const FacetTree& tree;
+  const Vec3& p;
+  Smallest best;
+  simd::LeastSize query;
+
+  Search(const FacetTree& searched, const Vec3& point, const Smallest& known)
+      : tree(searched), p(point), best(known) {
+    const Vec3 place = (p - tree.layout_.centre) / tree.layout_.unit;
+    for (int axis = 0; axis < 3; ++axis) {
+      query.place[axis] = place[axis];
+    }
+    query.limit = limit();
+    query.context = this;
+    query.overflow = [](simd::LeastSize& full) { static_cast<Search*>(full.context)->decide(); };
+  }
+
+  float limit() const {
+    const double scaled = best.size / tree.layout_.unit * (1.0 + relative_rounding);
+    return scaled < FLT_MAX ? static_cast<float>(scaled) : FLT_MAX;
+  }
+
+  void decide() {
+    for (int i = 0; i < query.count; ++i) {
+      if (query.lower_bounds[i] <= query.limit) {
+        const std::uint32_t facet = query.facets[i];
+        const double size = tree.facets_[facet].size_at(p);
+        if (size < best.size || (size == best.size && facet < best.facet)) {
+          best = {size, facet};
+        }
+      }
+    }
+    query.count = 0;
+    query.limit = std::min(query.limit, limit());
+  }
+};
+
+FacetTree::Smallest FacetTree::smallest(const Vec3& p, const simd::NodeEntry* entries, int count,
+                                        const Smallest& known) const {
+  if (empty()) {
+    return known;
+  }
+  Search search(*this, p, known);
+  static const simd::TreeKernels& kernels = simd::tree_kernels();
+  kernels.least_size(view(), entries, count, search.query);
+  search.decide();
+  return search.best;
+}
+
 double FacetTree::size(const Vec3& p, double upper_bound) const {
+  if (!((p - layout_.centre).cwiseAbs().maxCoeff() < farthest_for_float * layout_.unit)) {
+    return reference_size(p, upper_bound);
+  }
+  return smallest(p, &root, 1, {upper_bound, Smallest::no_facet}).size;
+}
+
+void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
+                      double* sizes) const {
+  std::uint32_t previous = Smallest::no_facet;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3& p = points[i];
+    if (!((p - layout_.centre).cwiseAbs().maxCoeff() < farthest_for_float * layout_.unit)) {
+      sizes[i] = reference_size(p, upper_bound);
+      continue;
+    }
+    Smallest known{upper_bound, Smallest::no_facet};
+    if (previous != Smallest::no_facet) {
+      const double size = facets_[previous].size_at(p);
+      if (size < upper_bound) {
+        known = {size, previous};
+      }
+    }
+    known = smallest(p, &root, 1, known);
+    sizes[i] = known.size;
+    previous = known.facet != Smallest::no_facet ? known.facet : previous;
+  }
+}
+
+double FacetTree::reference_size(const Vec3& p, double upper_bound) const {
   return best_first(
-             upper_bound,
-             [&p](const Node& node) {
-               return node.min_start_size + node.min_slope * node.box.exteriorDistance(p);
-             },
+             upper_bound, [](std::size_t, const Box&) { return 0.0; },
              [&](std::uint32_t i) { return facets_[i].size_at(p); })
       .distance;
 }
@@ -103,8 +157,9 @@ FacetTree::Closest FacetTree::closest_facet(const Vec3& p) const {
 }
 
 std::size_t FacetTree::memory_bytes() const {
-  return nodes_.capacity() * sizeof(Node) + facets_.capacity() * sizeof(SizedFacet) +
-         original_index_.capacity() * sizeof(std::uint32_t);
+  return facets_.capacity() * sizeof(SizedFacet) + layout_.order.capacity() * sizeof(layout_.order[0]) +
+         layout_.nodes.capacity() * (sizeof(simd::WideNode) + sizeof(float)) +
+         layout_.blocks.capacity() * sizeof(simd::FacetBlock);
 }
 
 }  // namespace meshgrow

@@ -7,14 +7,16 @@
 #include <utility>
 #include <vector>
 
+#include "simd/tree_kernels.h"
 #include "sized_facets.h"
+#include "tree_layout.h"
 
 namespace meshgrow {
 
-/// Bounding volume hierarchy over sized facets. Each node carries the smallest start size and the
-/// smallest slope below it, so a best-first descent finds the exact minimum of S0 + α · distance
-/// over
-/// **all** facets, not only over the nearest one (DESIGN.md, section 2).
+/// Bounding volume hierarchy over sized facets, eight children a node. Each node carries the
+/// smallest start size and the smallest slope below it, so a best-first descent finds the exact
+/// minimum of S0 + α · distance over **all** facets, not only over the nearest one (DESIGN.md,
+/// section 2).
 ///
 /// Immutable after construction; every const function may be called from any thread.
 class FacetTree {
@@ -22,11 +24,29 @@ class FacetTree {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Takes the facets over and reorders them. An empty set is allowed: every size is then infinite.
-  explicit FacetTree(SizedFacets facets);
+  /// `threads` build (0: OMP_NUM_THREADS, else all processors); the result does not depend on it.
+  explicit FacetTree(SizedFacets facets, int threads = 1);
 
   /// Minimum over all facets of S0 + α · distance(p), or `upper_bound` where no facet is below it.
-  /// p must be finite; model units.
+  /// p must be finite; model units. Float rules facets out, double decides among the rest.
   double size(const Vec3& p, double upper_bound = infinity) const;
+
+  /// The same for many points, faster where neighbours in the list are neighbours in space.
+  void sizes(const Vec3* points, std::size_t count, double upper_bound, double* sizes) const;
+
+  struct Smallest {
+    static constexpr std::uint32_t no_facet = 0xFFFFFFFFu;
+    double size = infinity;           ///< model units
+    std::uint32_t facet = no_facet;   ///< index into facets(); of equal ones the first
+  };
+
+  /// The smallest among the facets below `entries`, if it is below that of `known`: this is where
+  /// the search begins, and what is answered otherwise.
+  Smallest smallest(const Vec3& p, const simd::NodeEntry* entries, int count,
+                    const Smallest& known) const;
+
+  /// Every facet is below it.
+  static constexpr simd::NodeEntry root = simd::all_children;
 
   struct Closest {
     std::size_t facet = 0;       ///< index into facets()
@@ -41,7 +61,7 @@ class FacetTree {
   template <typename DistanceTo>
   Closest closest_facet(const Vec3& p, double within, DistanceTo distance_to) const {
     return best_first(
-        within, [&p](const Node& node) { return node.box.exteriorDistance(p); }, distance_to);
+        within, [&p](std::size_t, const Box& box) { return box.exteriorDistance(p); }, distance_to);
   }
 
   /// The same among the facets below nodes for which `distance_to_node(node, box)` gives a distance
@@ -50,31 +70,13 @@ class FacetTree {
   template <typename DistanceToNode, typename DistanceTo>
   Closest closest_facet(double within, DistanceToNode distance_to_node,
                         DistanceTo distance_to) const {
-    return best_first(
-        within,
-        [&](const Node& node) {
-          return distance_to_node(static_cast<std::size_t>(&node - nodes_.data()), node.box);
-        },
-        distance_to);
+    return best_first(within, distance_to_node, distance_to);
   }
 
   /// What `merge(value, other)` makes of the values of all facets below each node, one value a
   /// node, the first for all facets.
   template <typename Value, typename OfFacet, typename Merge>
-  std::vector<Value> node_values(OfFacet of_facet, Merge merge) const {
-    std::vector<Value> values(nodes_.size());
-    for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
-      const Node& node = nodes_[i];
-      values[i] = node.count > 0 ? of_facet(node.first) : values[node.first];
-      for (std::uint32_t k = 1; k < node.count; ++k) {
-        merge(values[i], of_facet(node.first + k));
-      }
-      if (node.count == 0) {
-        merge(values[i], values[node.first + 1]);
-      }
-    }
-    return values;
-  }
+  std::vector<Value> node_values(OfFacet of_facet, Merge merge) const;
 
   /// The first triangle that the ray from `origin` along the unit vector `direction` meets at a
   /// distance below `within`, among those that `accepts(i)`, with i an index into facets().
@@ -83,7 +85,7 @@ class FacetTree {
                     Accepts accepts) const {
     const Vec3 inverse = direction.cwiseInverse();
     return best_first(
-        within, [&](const Node& node) { return ray_enters(node.box, origin, inverse); },
+        within, [&](std::size_t, const Box& box) { return ray_enters(box, origin, inverse); },
         [&](std::uint32_t i) {
           const double hit = ray_distance(facets_[i].facet, origin, direction);
           return hit < infinity && accepts(i) ? hit : infinity;
@@ -98,69 +100,115 @@ class FacetTree {
   const SizedFacets& facets() const { return facets_; }
 
   /// Where facets()[i] stood in the set that the tree was made from.
-  std::size_t original_index(std::size_t i) const { return original_index_[i]; }
+  std::size_t original_index(std::size_t i) const { return layout_.order[i]; }
 
   bool empty() const { return facets_.empty(); }
   std::size_t memory_bytes() const;
 
+  /// For kernels: lengths in units of `unit()`, places relative to `centre()`.
+  simd::WideTree view() const {
+    return {layout_.nodes.data(), layout_.slopes.data(), layout_.blocks.data()};
+  }
+  double unit() const { return layout_.unit; }
+  const Vec3& centre() const { return layout_.centre; }
+  double largest_slope() const { return largest_slope_; }
+  /// Cells may keep entries: there are few enough nodes.
+  bool has_entries() const { return layout_.nodes.size() <= simd::max_nodes; }
+
  private:
-  struct Node {
-    Box box;
-    double min_start_size;
-    double min_slope;
-    std::uint32_t
-        first;  ///< first facet of a leaf, else index of the first of two adjacent children
-    std::uint32_t count;  ///< facets of a leaf, 0 for an inner node
-  };
+  struct Search;
 
-  /// Median splits halve the facets, so 2^32 facets need 32 levels; one entry a level stays behind.
-  static constexpr std::size_t stack_size = 64;
+  /// Entries of a stack that holds up to seven siblings a level, of eleven levels.
+  static constexpr std::size_t stack_size = 96;
 
-  void build(std::uint32_t node, std::uint32_t first, std::uint32_t count,
-             const SizedFacets& facets, const std::vector<Vec3>& centroids);
+  Box child_box(const simd::WideNode& node, int lane) const;
+  double reference_size(const Vec3& p, double upper_bound) const;
 
   template <typename LowerBound, typename FacetValue>
   Closest best_first(double upper_bound, LowerBound lower_bound, FacetValue value) const;
 
   SizedFacets facets_;
-  std::vector<std::uint32_t> original_index_;
-  std::vector<Node> nodes_;
+  TreeLayout layout_;
+  double largest_slope_ = 0.0;
 };
+
+template <typename Value, typename OfFacet, typename Merge>
+std::vector<Value> FacetTree::node_values(OfFacet of_facet, Merge merge) const {
+  if (empty()) {
+    return {};
+  }
+  // The first is for all; child k of node n is 1 + 8 n + k, and holds no value where there is none.
+  std::vector<Value> values(1 + layout_.nodes.size() * simd::lanes);
+  for (std::size_t n = layout_.nodes.size(); n-- > 0;) {  // children come after their parents
+    const simd::WideNode& node = layout_.nodes[n];
+    for (int lane = 0; lane < simd::lanes && node.start_size[lane] < infinity; ++lane) {
+      Value& value = values[1 + n * simd::lanes + lane];
+      const std::uint32_t child = node.child[lane];
+      if ((child & simd::WideNode::is_block) != 0) {
+        const simd::FacetBlock& block = layout_.blocks[child & ~simd::WideNode::is_block];
+        value = of_facet(block.first);
+        for (std::uint32_t k = 1; k < block.count; ++k) {
+          merge(value, of_facet(block.first + k));
+        }
+      } else {
+        const std::size_t first = 1 + static_cast<std::size_t>(child) * simd::lanes;
+        value = values[first];
+        const simd::WideNode& below = layout_.nodes[child];
+        for (int k = 1; k < simd::lanes && below.start_size[k] < infinity; ++k) {
+          merge(value, values[first + k]);
+        }
+      }
+    }
+  }
+  values[0] = values[1];
+  for (int k = 1; k < simd::lanes && layout_.nodes[0].start_size[k] < infinity; ++k) {
+    merge(values[0], values[1 + k]);
+  }
+  return values;
+}
 
 template <typename LowerBound, typename FacetValue>
 FacetTree::Closest FacetTree::best_first(double upper_bound, LowerBound lower_bound,
                                          FacetValue value) const {
   struct Entry {
     double bound;
-    std::uint32_t node;
+    std::uint32_t child;
   };
   Closest best{facets_.size(), upper_bound};
-  if (nodes_.empty()) {
+  if (layout_.nodes.empty() || !(lower_bound(0, layout_.box) < best.distance)) {
     return best;
   }
   std::array<Entry, stack_size> stack;
   std::size_t top = 0;
-  stack[top++] = {lower_bound(nodes_[0]), 0};
+  stack[top++] = {-infinity, 0};
   while (top > 0) {
     const Entry entry = stack[--top];
     if (!(entry.bound < best.distance)) {
       continue;
     }
-    const Node& node = nodes_[entry.node];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double candidate = value(i);
-      if (candidate < best.distance) {
-        best = {i, candidate};
+    if ((entry.child & simd::WideNode::is_block) != 0) {
+      const simd::FacetBlock& block = layout_.blocks[entry.child & ~simd::WideNode::is_block];
+      for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
+        const double candidate = value(i);
+        if (candidate < best.distance) {
+          best = {i, candidate};
+        }
       }
+      continue;
     }
-    if (node.count == 0) {
-      Entry near{lower_bound(nodes_[node.first]), node.first};
-      Entry far{lower_bound(nodes_[node.first + 1]), node.first + 1};
-      if (far.bound < near.bound) {
-        std::swap(near, far);
+    const simd::WideNode& node = layout_.nodes[entry.child];
+    const std::size_t first = top;
+    for (int lane = 0; lane < simd::lanes && node.start_size[lane] < infinity; ++lane) {
+      const Entry child{lower_bound(1 + static_cast<std::size_t>(entry.child) * simd::lanes + lane,
+                                    child_box(node, lane)),
+                        node.child[lane]};
+      if (child.bound < best.distance) {
+        std::size_t place = top++;
+        for (; place > first && stack[place - 1].bound < child.bound; --place) {
+          stack[place] = stack[place - 1];
+        }
+        stack[place] = child;
       }
-      stack[top++] = far;
-      stack[top++] = near;
     }
   }
   return best;

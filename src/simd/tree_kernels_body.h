@@ -1,0 +1,380 @@
+// The kernels, compiled once for each instruction set. The including file defines KERNEL_NAMESPACE
+// and KERNEL_NAME. Uses no templates or inline functions of libraries: the linker might take a copy
+// made for newer processors than the one at hand.
+
+#include <cstdint>
+
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+#include "tree_kernels.h"
+
+namespace meshgrow::simd {
+namespace KERNEL_NAMESPACE {
+namespace {
+
+#include "float8.h"
+
+constexpr float relative_rounding = 2e-6f;  ///< of sizes in float, generously
+
+struct Place {
+  Float8 x, y, z;
+};
+
+inline Place float_place(const double* p) {
+  return {all(static_cast<float>(p[0])), all(static_cast<float>(p[1])),
+          all(static_cast<float>(p[2]))};
+}
+
+// ==== Boxes and facets
+
+/// From the nearest point of each box to the place.
+inline Place way_from_boxes(const WideNode& node, const Place& p) {
+  return {p.x - min(max(p.x, load(node.lower[0])), load(node.upper[0])),
+          p.y - min(max(p.y, load(node.lower[1])), load(node.upper[1])),
+          p.z - min(max(p.z, load(node.lower[2])), load(node.upper[2]))};
+}
+
+inline Float8 length(const Place& way) {
+  return sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+}
+
+inline Float8 lower_bounds(const WideNode& node, float slope, const Place& p) {
+  return load(node.start_size) + all(slope) * length(way_from_boxes(node, p));
+}
+
+/// A place as the facets of a block see it.
+struct BlockView {
+  Float8 nx, ny, nz;  ///< normals
+  Float8 dx, dy, dz;  ///< from the closest points to the place, in the facets' frames
+  Float8 distance;
+
+  BlockView(const FacetBlock& block, const double* p) {
+    const Float8 px = all(static_cast<float>(p[0] - block.origin[0])) - load(block.corner[0]);
+    const Float8 py = all(static_cast<float>(p[1] - block.origin[1])) - load(block.corner[1]);
+    const Float8 pz = all(static_cast<float>(p[2] - block.origin[2])) - load(block.corner[2]);
+    const Float8 ax = load(block.along[0]), ay = load(block.along[1]), az = load(block.along[2]);
+    const Float8 cx = load(block.across[0]), cy = load(block.across[1]), cz = load(block.across[2]);
+    nx = ay * cz - az * cy;
+    ny = az * cx - ax * cz;
+    nz = ax * cy - ay * cx;
+    const Float8 x = px * ax + py * ay + pz * az;
+    const Float8 y = px * cx + py * cy + pz * cz;
+    dz = px * nx + py * ny + pz * nz;
+
+    const Float8 zero = all(0.0f), one = all(1.0f), tiny = all(1e-36f);
+    const Float8 side = load(block.length), foot = load(block.foot), height = load(block.height);
+    // Along the longest side.
+    dx = x - min(max(x, zero), side);
+    dy = y;
+    Float8 best = dx * dx + dy * dy;
+    // Along the side from the first corner to the third.
+    const Float8 t =
+        min(max((x * foot + y * height) / (foot * foot + height * height + tiny), zero), one);
+    const Float8 ex = x - t * foot, ey = y - t * height;
+    const Float8 e = ex * ex + ey * ey;
+    dx = e < best ? ex : dx;
+    dy = e < best ? ey : dy;
+    best = min(best, e);
+    // Along the side from the second corner to the third.
+    const Float8 back = foot - side;
+    const Float8 xb = x - side;
+    const Float8 s =
+        min(max((xb * back + y * height) / (back * back + height * height + tiny), zero), one);
+    const Float8 fx = xb - s * back, fy = y - s * height;
+    const Float8 f = fx * fx + fy * fy;
+    dx = f < best ? fx : dx;
+    dy = f < best ? fy : dy;
+    best = min(best, f);
+    // Above the inside.
+    const Int8 inside =
+        (y > zero) & (foot * y <= height * x) & (back * y >= height * xb) & (height > zero);
+    dx = inside ? zero : dx;
+    dy = inside ? zero : dy;
+    best = inside ? zero : best;
+    distance = sqrt(best + dz * dz);
+  }
+
+  Place way(const FacetBlock& block) const {
+    return {dx * load(block.along[0]) + dy * load(block.across[0]) + dz * nx,
+            dx * load(block.along[1]) + dy * load(block.across[1]) + dz * ny,
+            dx * load(block.along[2]) + dy * load(block.across[2]) + dz * nz};
+  }
+};
+
+// ==== Descent
+
+struct StackEntry {
+  float bound;
+  std::uint32_t child;
+};
+
+/// Entries looked at together, so that the most promising child comes first.
+constexpr int entries_at_once = 16;
+/// Seven siblings stay behind at each of 11 levels at most.
+constexpr int stack_size = entries_at_once * lanes + 11 * lanes;
+
+struct Stack {
+  int top = 0;
+  StackEntry entries[stack_size];
+
+  /// Pushes the children of `mask`, the one with the least bound last.
+  void push(const WideNode& node, unsigned mask, Float8 bounds) {
+    alignas(32) float bound[lanes];
+    *reinterpret_cast<Float8*>(bound) = bounds;
+    const int begin = top;
+    while (mask != 0) {
+      const int lane = __builtin_ctz(mask);
+      mask &= mask - 1;
+      StackEntry entry{bound[lane], node.child[lane]};
+      int place = top++;
+      while (place > begin && entries[place - 1].bound < entry.bound) {
+        entries[place] = entries[place - 1];
+        --place;
+      }
+      entries[place] = entry;
+    }
+  }
+
+  /// Brings the least to the top.
+  void raise_least() {
+    int least = 0;
+    for (int i = 1; i < top; ++i) {
+      least = entries[i].bound < entries[least].bound ? i : least;
+    }
+    if (top > 0) {
+      const StackEntry entry = entries[least];
+      entries[least] = entries[top - 1];
+      entries[top - 1] = entry;
+    }
+  }
+};
+
+// ==== Least size
+
+inline void add_candidate(LeastSize& query, std::uint32_t facet, float lower_bound) {
+  if (query.count == LeastSize::capacity) {
+    int kept = 0;
+    for (int i = 0; i < query.count; ++i) {
+      if (query.lower_bounds[i] <= query.limit) {
+        query.facets[kept] = query.facets[i];
+        query.lower_bounds[kept++] = query.lower_bounds[i];
+      }
+    }
+    query.count = kept;
+    if (query.count > LeastSize::capacity / 2) {
+      query.overflow(query);
+    }
+  }
+  query.facets[query.count] = facet;
+  query.lower_bounds[query.count++] = lower_bound;
+}
+
+inline void ask_block(const FacetBlock& block, LeastSize& query) {
+  const BlockView view(block, query.place);
+  const Float8 slope = load(block.slope);
+  const Float8 size = load(block.start_size) + slope * view.distance;
+  const Float8 error = slope * all(block.place_error);
+  const Float8 lowest = size - error;
+  unsigned mask = bits(lowest <= all(query.limit));
+  if (mask == 0) {
+    return;
+  }
+  alignas(32) float low[lanes];
+  alignas(32) float high[lanes];
+  *reinterpret_cast<Float8*>(low) = lowest;
+  *reinterpret_cast<Float8*>(high) = (size + error) * all(1.0f + relative_rounding);
+  for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
+    const int lane = __builtin_ctz(rest);
+    query.limit = high[lane] < query.limit ? high[lane] : query.limit;
+  }
+  for (; mask != 0; mask &= mask - 1) {
+    const int lane = __builtin_ctz(mask);
+    if (low[lane] <= query.limit) {
+      add_candidate(query, block.first + static_cast<std::uint32_t>(lane), low[lane]);
+    }
+  }
+}
+
+void least_size(const WideTree& tree, const NodeEntry* entries, int count, LeastSize& query) {
+  const Place p = float_place(query.place);
+  Stack stack;
+  for (int first = 0; first < count; first += entries_at_once) {
+    const int last = first + entries_at_once < count ? first + entries_at_once : count;
+    for (int i = first; i < last; ++i) {
+      const std::uint32_t index = entries[i] >> 8;
+      const WideNode& node = tree.nodes[index];
+      const Float8 bounds = lower_bounds(node, tree.slopes[index], p);
+      stack.push(node, bits(bounds <= all(query.limit)) & entries[i], bounds);
+    }
+    if (last - first > 1) {
+      stack.raise_least();
+    }
+    while (stack.top > 0) {
+      const StackEntry entry = stack.entries[--stack.top];
+      if (entry.bound > query.limit) {
+        continue;
+      }
+      if ((entry.child & WideNode::is_block) != 0) {
+        ask_block(tree.blocks[entry.child & ~WideNode::is_block], query);
+        continue;
+      }
+      const WideNode& node = tree.nodes[entry.child];
+      const Float8 bounds = lower_bounds(node, tree.slopes[entry.child], p);
+      stack.push(node, bits(bounds <= all(query.limit)), bounds);
+    }
+  }
+}
+
+// ==== Tangent planes at the corners of a cell
+
+/// Least of plane(corner) · reciprocal(corner), with the planes given at the centre.
+inline Float8 least_ratios(const CellCorners& cell, Float8 at_centre, const Place& slopes) {
+  const Float8 h = all(cell.half_edge);
+  const Float8 x = slopes.x * h, y = slopes.y * h, z = slopes.z * h;
+  const Float8 below = at_centre - z, above = at_centre + z;
+  const Float8 sum = x + y, difference = x - y;
+  const float* r = cell.reciprocals;
+  Float8 least = (below - sum) * all(r[0]);
+  least = min(least, (below + difference) * all(r[1]));
+  least = min(least, (below - difference) * all(r[2]));
+  least = min(least, (below + sum) * all(r[3]));
+  least = min(least, (above - sum) * all(r[4]));
+  least = min(least, (above + difference) * all(r[5]));
+  least = min(least, (above - difference) * all(r[6]));
+  return min(least, (above + sum) * all(r[7]));
+}
+
+/// A box is convex as a facet is: its distance has a tangent plane, too.
+struct BoxRatios {
+  Float8 bounds;  ///< of sizes at the centre
+  Float8 ratios;
+
+  BoxRatios(const WideNode& node, float slope, const CellCorners& cell, const Place& centre) {
+    const Place way = way_from_boxes(node, centre);
+    const Float8 distance = length(way);
+    const Float8 steepness = all(slope) / max(distance, all(1e-30f));
+    bounds = load(node.start_size) + all(slope) * distance;
+    ratios = least_ratios(cell, bounds, {way.x * steepness, way.y * steepness, way.z * steepness});
+    // An infinite start size gives infinite ratios, as no corner's reciprocal is 0.
+  }
+};
+
+inline Float8 block_ratios(const FacetBlock& block, const CellCorners& cell) {
+  const BlockView view(block, cell.centre);
+  const Float8 slope = load(block.slope);
+  const Place way = view.way(block);
+  // Rounding moves the place and turns the direction: both are taken off the plane.
+  const Float8 error = all(block.place_error) + view.distance * all(5e-7f);
+  const Float8 distance = max(view.distance, all(1e-30f));
+  const Float8 turned = all(1.8f * cell.half_edge) * error / distance;
+  const Int8 has_direction = view.distance > all(8.0f) * error;
+  const Float8 steepness = has_direction ? slope / distance : all(0.0f);
+  const Float8 at_centre = load(block.start_size) +
+                           (has_direction ? slope * (view.distance - error - turned) : all(0.0f));
+  return least_ratios(cell, at_centre, {way.x * steepness, way.y * steepness, way.z * steepness});
+}
+
+void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
+  const Place centre = float_place(query.cell.centre);
+  Stack stack;
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t index = entries[i] >> 8;
+    const WideNode& node = tree.nodes[index];
+    const BoxRatios boxes(node, tree.slopes[index], query.cell, centre);
+    stack.push(node, bits(boxes.ratios < all(query.ratio)) & entries[i], boxes.ratios);
+    while (stack.top > 0) {
+      const StackEntry entry = stack.entries[--stack.top];
+      if (!(entry.bound < query.ratio)) {
+        continue;
+      }
+      if ((entry.child & WideNode::is_block) != 0) {
+        const Float8 ratios =
+            block_ratios(tree.blocks[entry.child & ~WideNode::is_block], query.cell);
+        for (int lane = 0; lane < lanes; ++lane) {
+          query.ratio = ratios[lane] < query.ratio ? ratios[lane] : query.ratio;
+        }
+        if (query.ratio < query.enough) {
+          return;
+        }
+        continue;
+      }
+      const WideNode& child = tree.nodes[entry.child];
+      const BoxRatios below(child, tree.slopes[entry.child], query.cell, centre);
+      stack.push(child, bits(below.ratios < all(query.ratio)), below.ratios);
+    }
+  }
+}
+
+// ==== Survivors
+
+struct Collector {
+  const WideTree& tree;
+  Survivors& query;
+  Place centre;
+  float half_diagonal;
+
+  /// False when the search is over without success.
+  bool visit(std::uint32_t index, unsigned mask) {
+    const WideNode& node = tree.nodes[index];
+    const BoxRatios boxes(node, tree.slopes[index], query.cell, centre);
+    const Float8 nearest = boxes.bounds - all(tree.slopes[index] * half_diagonal);
+    mask &= bits((boxes.ratios < all(1.0f)) & (nearest < all(query.largest)));
+    const Float8 edges = max(
+        max(load(node.upper[0]) - load(node.lower[0]), load(node.upper[1]) - load(node.lower[1])),
+        load(node.upper[2]) - load(node.lower[2]));
+    const unsigned large = bits(edges > all(query.open_edge));
+    unsigned kept = 0;
+    for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      const std::uint32_t child = node.child[lane];
+      if ((child & WideNode::is_block) != 0) {
+        if (!query.open_blocks || block_survives(tree.blocks[child & ~WideNode::is_block])) {
+          kept |= 1u << lane;
+        }
+        if (query.facets > query.most_facets) {
+          return false;
+        }
+      } else if ((large & 1u << lane) == 0) {
+        kept |= 1u << lane;
+      } else if (!visit(child, all_children)) {
+        return false;
+      }
+    }
+    if (kept != 0) {
+      if (query.count == query.capacity) {
+        return false;
+      }
+      query.entries[query.count++] = index << 8 | kept;
+    }
+    return true;
+  }
+
+  bool block_survives(const FacetBlock& block) {
+    const unsigned facets = bits(block_ratios(block, query.cell) < all(1.0f));
+    query.facets += static_cast<std::uint32_t>(__builtin_popcount(facets));
+    return facets != 0;
+  }
+};
+
+bool survivors(const WideTree& tree, const NodeEntry* entries, int count, Survivors& query) {
+  query.count = 0;
+  query.facets = 0;
+  Collector collector{tree, query, float_place(query.cell.centre),
+                      1.7320509f * query.cell.half_edge};
+  for (int i = 0; i < count; ++i) {
+    if (!collector.visit(entries[i] >> 8, entries[i] & all_children)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+extern const TreeKernels kernels;
+const TreeKernels kernels = {KERNEL_NAME, least_size, least_ratio, survivors};
+
+}  // namespace KERNEL_NAMESPACE
+}  // namespace meshgrow::simd

@@ -1,0 +1,30 @@
+#ifndef MESHGROW_TREE_LAYOUT_H
+#define MESHGROW_TREE_LAYOUT_H
+
+#include <cstdint>
+#include <vector>
+
+#include "simd/wide_tree.h"
+#include "sized_facets.h"
+
+namespace meshgrow {
+
+/// The nodes and blocks of a FacetTree, and the order of facets that goes with them: those of a
+/// block are adjacent. Every node but those along one edge of the tree has eight children, every
+/// block but the last eight facets.
+struct TreeLayout {
+  Box box;            ///< of all facets, model units
+  Vec3 centre;        ///< origin of the nodes' and blocks' coordinates, model units
+  double unit = 1.0;  ///< of the nodes' and blocks' lengths and sizes, in model units
+  std::vector<std::uint32_t> order;  ///< original index of each facet
+  std::vector<simd::WideNode> nodes;
+  std::vector<float> slopes;  ///< smallest below each node
+  std::vector<simd::FacetBlock> blocks;
+};
+
+/// The same for any number of threads (0: as many as `parallel_for` takes).
+TreeLayout layout_tree(const SizedFacets& facets, int threads);
+
+}  // namespace meshgrow
+
+#endif
