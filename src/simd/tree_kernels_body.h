@@ -105,51 +105,82 @@ struct BlockView {
 
 // ==== Descent
 
-struct StackEntry {
-  float bound;
-  std::uint32_t child;
+/// Number of the least of the values at the bits of the mask, which has one at least.
+inline int least_lane(Float8 values, unsigned mask) {
+  if ((mask & (mask - 1)) == 0) {
+    return __builtin_ctz(mask);
+  }
+#ifdef __AVX__
+  const Int8 bit = {1, 2, 4, 8, 16, 32, 64, 128};
+  const Int8 wanted = (bit & static_cast<std::int32_t>(mask)) != 0;
+  values = wanted ? values : all(3.4e38f);
+  Float8 least = _mm256_min_ps(values, _mm256_permute2f128_ps(values, values, 1));
+  least = _mm256_min_ps(least, _mm256_permute_ps(least, 0x4E));
+  least = _mm256_min_ps(least, _mm256_permute_ps(least, 0xB1));
+  return __builtin_ctz(bits(values <= least) & mask);
+#else
+  int least = __builtin_ctz(mask);
+  for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
+    const int lane = __builtin_ctz(mask);
+    least = values[lane] < values[least] ? lane : least;
+  }
+  return least;
+#endif
+}
+
+/// A node on the way down: children still to be visited, and their bounds.
+struct Level {
+  Float8 bounds;
+  const WideNode* node;
+  unsigned mask;
 };
 
-/// Entries looked at together, so that the most promising child comes first.
-constexpr int entries_at_once = 16;
-/// Seven siblings stay behind at each of 11 levels at most.
-constexpr int stack_size = entries_at_once * lanes + 11 * lanes;
+constexpr int max_levels = 12;
 
-struct Stack {
+/// Visits the children of the top level and what is below them, always the most promising one
+/// first. `enter(child)` gives the level of a node, `ask(block)` looks at a block, `limit()` is
+/// what bounds have to be below, or equal to.
+template <typename Enter, typename Ask, typename Limit>
+inline void descend(Level* levels, Enter enter, Ask ask, Limit limit) {
   int top = 0;
-  StackEntry entries[stack_size];
-
-  /// Pushes the children of `mask`, the one with the least bound last.
-  void push(const WideNode& node, unsigned mask, Float8 bounds) {
-    alignas(32) float bound[lanes];
-    *reinterpret_cast<Float8*>(bound) = bounds;
-    const int begin = top;
-    while (mask != 0) {
-      const int lane = __builtin_ctz(mask);
-      mask &= mask - 1;
-      StackEntry entry{bound[lane], node.child[lane]};
-      int place = top++;
-      while (place > begin && entries[place - 1].bound < entry.bound) {
-        entries[place] = entries[place - 1];
-        --place;
+  for (;;) {
+    Level& level = levels[top];
+    const unsigned mask = level.mask & bits(level.bounds <= all(limit()));
+    if (mask == 0) {
+      if (top-- == 0) {
+        return;
       }
-      entries[place] = entry;
+      continue;
+    }
+    const int lane = least_lane(level.bounds, mask);
+    level.mask = mask & ~(1u << lane);
+    const std::uint32_t child = level.node->child[lane];
+    if ((child & WideNode::is_block) != 0) {
+      if (!ask(child & ~WideNode::is_block)) {
+        return;
+      }
+    } else {
+      levels[++top] = enter(child);
     }
   }
+}
 
-  /// Brings the least to the top.
-  void raise_least() {
-    int least = 0;
-    for (int i = 1; i < top; ++i) {
-      least = entries[i].bound < entries[least].bound ? i : least;
-    }
-    if (top > 0) {
-      const StackEntry entry = entries[least];
-      entries[least] = entries[top - 1];
-      entries[top - 1] = entry;
+/// The entry to begin with: it has the least bound of a child.
+template <typename Enter>
+inline int most_promising(const NodeEntry* entries, int count, Enter enter) {
+  int best = 0;
+  float least = 3.4e38f;
+  for (int i = 0; i < count && count > 1; ++i) {
+    const Level level = enter(entries[i] >> 8);
+    const unsigned mask = entries[i] & all_children;
+    const float bound = level.bounds[least_lane(level.bounds, mask)];
+    if (bound < least) {
+      least = bound;
+      best = i;
     }
   }
-};
+  return best;
+}
 
 // ==== Least size
 
@@ -199,31 +230,21 @@ inline void ask_block(const FacetBlock& block, LeastSize& query) {
 
 void least_size(const WideTree& tree, const NodeEntry* entries, int count, LeastSize& query) {
   const Place p = float_place(query.place);
-  Stack stack;
-  for (int first = 0; first < count; first += entries_at_once) {
-    const int last = first + entries_at_once < count ? first + entries_at_once : count;
-    for (int i = first; i < last; ++i) {
-      const std::uint32_t index = entries[i] >> 8;
-      const WideNode& node = tree.nodes[index];
-      const Float8 bounds = lower_bounds(node, tree.slopes[index], p);
-      stack.push(node, bits(bounds <= all(query.limit)) & entries[i], bounds);
-    }
-    if (last - first > 1) {
-      stack.raise_least();
-    }
-    while (stack.top > 0) {
-      const StackEntry entry = stack.entries[--stack.top];
-      if (entry.bound > query.limit) {
-        continue;
-      }
-      if ((entry.child & WideNode::is_block) != 0) {
-        ask_block(tree.blocks[entry.child & ~WideNode::is_block], query);
-        continue;
-      }
-      const WideNode& node = tree.nodes[entry.child];
-      const Float8 bounds = lower_bounds(node, tree.slopes[entry.child], p);
-      stack.push(node, bits(bounds <= all(query.limit)), bounds);
-    }
+  const auto enter = [&](std::uint32_t index) {
+    const WideNode& node = tree.nodes[index];
+    return Level{lower_bounds(node, tree.slopes[index], p), &node, all_children};
+  };
+  const auto ask = [&](std::uint32_t block) {
+    ask_block(tree.blocks[block], query);
+    return true;
+  };
+  Level levels[max_levels];
+  const int first = most_promising(entries, count, enter);
+  for (int i = 0; i < count; ++i) {
+    const NodeEntry entry = entries[i == 0 ? first : i <= first ? i - 1 : i];
+    levels[0] = enter(entry >> 8);
+    levels[0].mask = entry & all_children;
+    descend(levels, enter, ask, [&] { return query.limit; });
   }
 }
 
@@ -278,32 +299,24 @@ inline Float8 block_ratios(const FacetBlock& block, const CellCorners& cell) {
 
 void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
   const Place centre = float_place(query.cell.centre);
-  Stack stack;
-  for (int i = 0; i < count; ++i) {
-    const std::uint32_t index = entries[i] >> 8;
+  const auto enter = [&](std::uint32_t index) {
     const WideNode& node = tree.nodes[index];
-    const BoxRatios boxes(node, tree.slopes[index], query.cell, centre);
-    stack.push(node, bits(boxes.ratios < all(query.ratio)) & entries[i], boxes.ratios);
-    while (stack.top > 0) {
-      const StackEntry entry = stack.entries[--stack.top];
-      if (!(entry.bound < query.ratio)) {
-        continue;
-      }
-      if ((entry.child & WideNode::is_block) != 0) {
-        const Float8 ratios =
-            block_ratios(tree.blocks[entry.child & ~WideNode::is_block], query.cell);
-        for (int lane = 0; lane < lanes; ++lane) {
-          query.ratio = ratios[lane] < query.ratio ? ratios[lane] : query.ratio;
-        }
-        if (query.ratio < query.enough) {
-          return;
-        }
-        continue;
-      }
-      const WideNode& child = tree.nodes[entry.child];
-      const BoxRatios below(child, tree.slopes[entry.child], query.cell, centre);
-      stack.push(child, bits(below.ratios < all(query.ratio)), below.ratios);
-    }
+    return Level{BoxRatios(node, tree.slopes[index], query.cell, centre).ratios, &node,
+                 all_children};
+  };
+  const auto ask = [&](std::uint32_t block) {
+    const Float8 ratios = block_ratios(tree.blocks[block], query.cell);
+    const float least = ratios[least_lane(ratios, all_children)];
+    query.ratio = least < query.ratio ? least : query.ratio;
+    return query.ratio >= query.enough;
+  };
+  Level levels[max_levels];
+  const int first = most_promising(entries, count, enter);
+  for (int i = 0; i < count && query.ratio >= query.enough; ++i) {
+    const NodeEntry entry = entries[i == 0 ? first : i <= first ? i - 1 : i];
+    levels[0] = enter(entry >> 8);
+    levels[0].mask = entry & all_children;
+    descend(levels, enter, ask, [&] { return query.ratio; });
   }
 }
 
