@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facet_tree.h"
+#include "grid_cell.h"
 
 namespace meshgrow {
 
@@ -18,7 +19,7 @@ struct GridOptions {
   /// on it.
   int threads = 0;
   /// A cell with at most so many facets left may keep them and answer from them.
-  int facets_per_exact_leaf = 16;
+  int facets_per_exact_leaf = 96;
   /// Called with the finished fraction in [0, 1], from the calling thread only.
   std::function<void(double)> progress;
 };
@@ -29,12 +30,10 @@ void check_tolerance(double tolerance);
 /// Octree that interpolates a size field (paper, section 4; DESIGN.md, section 2).
 ///
 /// The field is h(p) = min(L, min over facets of S0 + α · distance). The grid promises
-/// `size(p) ≤ (1 + t) h(p)` at every point p, by proof and not by sampling: in an interpolated cell
-/// each facet that can matter has a tangent plane, a lower bound of its convex size, that stands
-/// above the corner values divided by 1 + t at all eight corners; trilinear interpolation carries
-/// that order to the whole cell. Beside the source, where no such plane exists, a cell keeps the
-/// few facets that can rule in it and answers from them. That the grid is not much *smaller* than h
-/// is checked at 19 points of each interpolated cell unless one facet proves it.
+/// `size(p) ≤ (1 + t) h(p)` at every point p, by proof and not by sampling (cell_classifier.h).
+/// Beside the source, where facets have no tangent planes that help, a cell keeps the parts of the
+/// tree that hold the few facets which can rule in it, and answers from them. That the grid is not
+/// much *smaller* than h is proven by one facet, or checked at 19 points of the cell.
 ///
 /// Immutable after construction; every const function may be called from any thread.
 class BackgroundGrid {
@@ -45,6 +44,9 @@ class BackgroundGrid {
 
   /// Size at the finite point p in model units: from the grid inside its cube, exact outside.
   double size(const Vec3& p) const;
+
+  /// The same for many points, which wait for memory together and not one after the other.
+  void sizes(const Vec3* points, std::size_t count, double* sizes) const;
 
   struct Statistics {
     std::size_t interpolated_leaves = 0;
@@ -58,7 +60,7 @@ class BackgroundGrid {
 
   const FacetTree& tree() const { return *tree_; }
   double size_limit() const { return size_limit_; }
-  Box cube() const { return Box(origin_, origin_ + Vec3::Constant(edge_)); }
+  Box cube() const { return Box(cube_.origin, cube_.origin + Vec3::Constant(cube_.edge)); }
 
  private:
   friend class GridBuilder;
@@ -74,7 +76,8 @@ class BackgroundGrid {
     std::vector<std::array<NodeCode, 8>> blocks;
     std::vector<CornerValues> corners;
     std::vector<std::uint32_t> exact_begin;  ///< one more than exact leaves
-    std::vector<std::uint32_t> exact_facets;
+    /// Of each exact leaf the facet that rules at its centre, then entries into the tree.
+    std::vector<std::uint32_t> exact_data;
     int depth = 0;
   };
 
@@ -82,14 +85,33 @@ class BackgroundGrid {
   static NodeKind kind(NodeCode code) { return static_cast<NodeKind>(code >> 30); }
   static std::uint32_t index(NodeCode code) { return code & 0x3FFFFFFFu; }
 
+  /// Where a point is: the leaf, and the place in it.
+  struct Spot {
+    NodeCode node;
+    int depth;
+    std::array<std::uint32_t, 3> steps;  ///< of the finest lattice, from the cube's lowest corner
+    Vec3 place;                          ///< the same as a number with a fraction
+  };
+
+  bool find_in_table(const Vec3& p, Spot& spot) const;
+  NodeCode child(const Spot& spot) const;
+  double leaf_size(const Spot& spot, const Vec3& p) const;
   double exact_leaf_size(std::uint32_t leaf, const Vec3& p) const;
+  void fill_table();
+  void fill_table(NodeCode node, int depth, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
   std::shared_ptr<const FacetTree> tree_;
   double size_limit_;
-  Vec3 origin_;
-  double edge_;
-  NodeCode root_ = 0;
+  GridCube cube_;
+  double steps_per_unit_ = 0.0;
   Nodes nodes_;
+  /// The nodes of one depth, or the leaves above it, side by side: spares the way down to them.
+  struct TableEntry {
+    NodeCode node;
+    std::uint32_t depth;
+  };
+  std::vector<TableEntry> table_;
+  int table_depth_ = 0;
   Statistics statistics_;
 };
 

@@ -1,134 +1,134 @@
 #include "cell_classifier.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace meshgrow {
 
 namespace {
 
-/// Up to so many facets it is cheaper to look at the tangent plane of each than to descend the
-/// tree.
-constexpr std::size_t direct_evaluation_limit = 2048;
+/// Taken off where float has to prove something: rounding of sizes and of tangent planes.
+constexpr double rounding = 4e-6;
 
-/// Below this distance the direction to a facet is mostly rounding, of the cell's size or, far from
-/// the origin, of the coordinates themselves.
-double smallest_direction(const GridCell& cell) {
-  return std::max(1e-6 * cell.half_edge, 1e-9 * cell.centre.cwiseAbs().maxCoeff());
+/// Nodes longer than so many edges of the cell are replaced by their children.
+constexpr double open_edges = 1.0;
+
+/// Of what a cell hands its children; if there are more, it hands on what it has itself.
+constexpr int max_entries = 2048;
+
+/// Of an exact leaf.
+constexpr int max_leaf_entries = 32;
+
+constexpr std::size_t known_sizes = 1 << 14;
+
+float as_reciprocal(double size) {
+  return static_cast<float>(std::min(1.0 / size, static_cast<double>(FLT_MAX)));
+}
+
+const simd::TreeKernels& kernels() {
+  static const simd::TreeKernels& chosen = simd::tree_kernels();
+  return chosen;
 }
 
 }  // namespace
 
-CellClassifier::CellClassifier(const FacetTree& tree, double size_limit, double tolerance,
-                               std::size_t facets_per_exact_leaf)
+CellClassifier::CellClassifier(const FacetTree& tree, const GridCube& cube, double size_limit,
+                               double tolerance, std::size_t facets_per_exact_leaf)
     : tree_(tree),
+      cube_(cube),
       size_limit_(size_limit),
       tolerance_(tolerance),
-      facets_per_exact_leaf_(facets_per_exact_leaf) {}
+      facets_per_exact_leaf_(facets_per_exact_leaf),
+      known_(known_sizes) {}
 
 CellClassifier::Verdict CellClassifier::classify(const GridCell& cell,
-                                                 const std::vector<std::uint32_t>& candidates) {
+                                                 const CellCandidates& candidates) {
+  candidates_ = &candidates;
   lattice_known_ = false;
-  compute_tangents(cell, candidates);
-  drop_never_ruling(candidates);
+  entries_known_ = false;
+  scale_ = 1.0;
+  const Vec3 centre = cell.centre(cube_);
+  ruling_ = smallest(centre, candidates.entries, candidates.nearby.facet);
   if (bounded_by_lipschitz(cell)) {
     return Verdict::interpolate;
+  }
+  kernel_cell_.half_edge = static_cast<float>(cell.half_edge(cube_) / tree_.unit());
+  const Vec3 place = (centre - tree_.centre()) / tree_.unit();
+  std::copy(place.data(), place.data() + 3, kernel_cell_.centre);
+  for (int i = 0; i < 8; ++i) {
+    ruling_corners_[i] =
+        ruling_.facet == FacetTree::Smallest::no_facet
+            ? size_limit_
+            : std::min(size_limit_,
+                       tree_.facets()[ruling_.facet].size_at(cube_.at(cell.corner(i))));
   }
   if (never_too_coarse(cell) && not_much_too_fine(cell)) {
     return Verdict::interpolate;
   }
-  return few_facets_suffice() ? Verdict::keep_facets : Verdict::split;
+  if (few_facets_suffice()) {
+    return Verdict::keep_facets;
+  }
+  find_ruling_entries(cell);
+  return Verdict::split;
 }
 
-void CellClassifier::compute_tangents(const GridCell& cell,
-                                      const std::vector<std::uint32_t>& candidates) {
-  const SizedFacets& facets = tree_.facets();
-  tangents_.resize(candidates.size());
-  best_ = -1;
-  const double too_near = smallest_direction(cell);
-  double best_size = size_limit_;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const SizedFacet& facet = facets[candidates[k]];
-    const Vec3 away = cell.centre - closest_point(facet.facet, cell.centre);
-    const double distance = away.norm();
-    const double size = facet.start_size + facet.slope * distance;
-    if (distance > too_near) {
-      tangents_[k] = {size, (facet.slope * cell.half_edge / distance) * away};
-    } else {
-      tangents_[k] = {facet.start_size, Vec3::Zero()};  // no direction, but a bound all the same
-    }
-    if (size < best_size) {
-      best_size = size;
-      best_ = static_cast<std::int64_t>(k);
+FacetTree::Smallest CellClassifier::smallest(const Vec3& p,
+                                             const std::vector<simd::NodeEntry>& entries,
+                                             std::uint32_t nearby) const {
+  FacetTree::Smallest known{size_limit_, FacetTree::Smallest::no_facet};
+  if (nearby != FacetTree::Smallest::no_facet) {
+    const double size = tree_.facets()[nearby].size_at(p);
+    if (size < size_limit_) {
+      known = {size, nearby};
     }
   }
-  for (int i = 0; i < 8; ++i) {
-    best_corners_[i] = best_ < 0 ? size_limit_ : facets[candidates[best_]].size_at(cell.corner(i));
-  }
-}
-
-void CellClassifier::drop_never_ruling(const std::vector<std::uint32_t>& candidates) {
-  ruling_.clear();
-  ruling_tangents_.clear();
-  const double highest = *std::max_element(best_corners_.begin(), best_corners_.end());
-  const std::int64_t best_candidate = best_;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const Tangent& tangent = tangents_[k];
-    if (static_cast<std::int64_t>(k) != best_candidate) {
-      const double start_size = tree_.facets()[candidates[k]].start_size;
-      bool never_rules = std::max(start_size, tangent.smallest()) >= highest;
-      for (int i = 0; i < 8 && !never_rules; ++i) {
-        if (tangent.at_corner(i) < best_corners_[i]) {
-          break;
-        }
-        never_rules = i == 7;
-      }
-      if (never_rules) {
-        continue;
-      }
-    } else {
-      best_ = static_cast<std::int64_t>(ruling_.size());
-    }
-    ruling_.push_back(candidates[k]);
-    ruling_tangents_.push_back(tangent);
-  }
+  return tree_.smallest(p, entries.data(), static_cast<int>(entries.size()), known);
 }
 
 bool CellClassifier::bounded_by_lipschitz(const GridCell& cell) const {
-  double steepest = 0.0;
-  double smallest = size_limit_;
-  for (std::size_t k = 0; k < ruling_.size(); ++k) {
-    const SizedFacet& facet = tree_.facets()[ruling_[k]];
-    steepest = std::max(steepest, facet.slope);
-    smallest = std::min(smallest, std::max(facet.start_size, ruling_tangents_[k].smallest()));
-  }
-  return std::sqrt(3.0) * cell.half_edge * steepest <= tolerance_ * smallest;
+  const double change = std::sqrt(3.0) * cell.half_edge(cube_) * tree_.largest_slope();
+  return change <= tolerance_ * (ruling_.size - change);
 }
 
-bool CellClassifier::never_too_coarse(const GridCell& cell) const {
-  for (const Tangent& tangent : ruling_tangents_) {
-    for (int i = 0; i < 8; ++i) {
-      if ((1.0 + tolerance_) * tangent.at_corner(i) < cell.corner_values[i]) {
-        return false;
-      }
-    }
+bool CellClassifier::never_too_coarse(const GridCell& cell) {
+  simd::LeastRatio query;
+  query.cell = kernel_cell_;
+  for (int i = 0; i < 8; ++i) {
+    query.cell.reciprocals[i] = as_reciprocal(cell.corner_values[i] / tree_.unit());
   }
-  return true;
+  const double kept = 1.0 / (1.0 + tolerance_);
+  query.ratio = static_cast<float>(kept);
+  query.enough = static_cast<float>(kept * kept);
+  const std::vector<simd::NodeEntry>& entries = candidates_->entries;
+  kernels().least_ratio(tree_.view(), entries.data(), static_cast<int>(entries.size()), query);
+  if (query.ratio < static_cast<float>(kept)) {
+    scale_ = query.ratio * (1.0 + tolerance_) * (1.0 - rounding);
+  }
+  return query.ratio >= query.enough;
 }
 
 bool CellClassifier::not_much_too_fine(const GridCell& cell) {
   bool proven = true;
   for (int i = 0; i < 8; ++i) {
-    proven = proven && best_corners_[i] <= (1.0 + tolerance_) * cell.corner_values[i];
+    proven =
+        proven && ruling_corners_[i] <= (1.0 + 2.0 * tolerance_) * scale_ * cell.corner_values[i];
   }
-  if (proven) {
-    return true;
+  if (proven || cell.depth == max_grid_depth) {
+    return proven;
+  }
+  const auto fine_enough = [&](double exact, int i) {
+    const double interpolated =
+        trilinear(cell.corner_values, 0.5 * (i % 3), 0.5 * (i / 3 % 3), 0.5 * (i / 9));
+    return (1.0 - tolerance_) * exact <= scale_ * interpolated;
+  };
+  constexpr int centre = 13;
+  if (!fine_enough(ruling_.size, centre)) {
+    return false;
   }
   const Lattice& exact = lattice(cell);
   for (int i = 0; i < 27; ++i) {
-    const double interpolated =
-        trilinear(cell.corner_values, 0.5 * (i % 3), 0.5 * (i / 3 % 3), 0.5 * (i / 9));
-    if (exact[i] > (1.0 + tolerance_) * interpolated) {
+    if (!fine_enough(exact[i], i)) {
       return false;
     }
   }
@@ -136,50 +136,82 @@ bool CellClassifier::not_much_too_fine(const GridCell& cell) {
 }
 
 bool CellClassifier::few_facets_suffice() {
-  leaf_facets_.clear();
-  for (std::size_t k = 0; k < ruling_.size(); ++k) {
-    bool needed = static_cast<std::int64_t>(k) == best_;
-    for (int i = 0; i < 8 && !needed; ++i) {
-      needed = (1.0 + tolerance_) * ruling_tangents_[k].at_corner(i) < best_corners_[i];
-    }
-    if (needed) {
-      if (leaf_facets_.size() == facets_per_exact_leaf_) {
-        return false;
-      }
-      leaf_facets_.push_back(ruling_[k]);
-    }
+  leaf_entries_.clear();
+  if (facets_per_exact_leaf_ == 0) {
+    return false;
   }
+  leaf_entries_.resize(max_leaf_entries);
+  simd::Survivors query;
+  query.cell = kernel_cell_;
+  double largest = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const double size = ruling_corners_[i] / (1.0 + tolerance_) / tree_.unit();
+    query.cell.reciprocals[i] = as_reciprocal(size);
+    largest = std::max(largest, size);
+  }
+  query.largest = static_cast<float>(largest * (1.0 + rounding));
+  query.open_edge = 0.0f;
+  query.open_blocks = true;
+  query.most_facets = static_cast<std::uint32_t>(facets_per_exact_leaf_);
+  query.entries = leaf_entries_.data();
+  query.capacity = max_leaf_entries;
+  const std::vector<simd::NodeEntry>& entries = candidates_->entries;
+  if (!kernels().survivors(tree_.view(), entries.data(), static_cast<int>(entries.size()), query)) {
+    return false;
+  }
+  leaf_entries_.resize(static_cast<std::size_t>(query.count));
   return true;
 }
 
-double CellClassifier::size_by_ruling_facets(const Vec3& p, const Vec3& local) const {
-  double size = size_limit_;
-  const auto ask = [&](std::size_t k) {
-    size = std::min(size, tree_.facets()[ruling_[k]].size_at(p));
-  };
-  if (best_ >= 0) {
-    ask(static_cast<std::size_t>(best_));
+void CellClassifier::find_ruling_entries(const GridCell& cell) {
+  if (entries_known_) {
+    return;
   }
-  for (std::size_t k = 0; k < ruling_.size(); ++k) {
-    const Tangent& tangent = ruling_tangents_[k];
-    if (tangent.at_centre + tangent.slope_times_half_edge.dot(local) < size) {
-      ask(k);
-    }
+  entries_known_ = true;
+  children_.nearby = ruling_;
+  children_.entries.resize(max_entries);
+  simd::Survivors query;
+  query.cell = kernel_cell_;
+  double largest = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const double size = ruling_corners_[i] * (1.0 + rounding) / tree_.unit();
+    query.cell.reciprocals[i] = as_reciprocal(size);
+    largest = std::max(largest, size);
   }
-  return size;
+  query.largest = static_cast<float>(largest * (1.0 + rounding));
+  query.open_edge = static_cast<float>(open_edges * 2.0 * cell.half_edge(cube_) / tree_.unit());
+  query.open_blocks = false;
+  query.most_facets = ~0u;
+  query.entries = children_.entries.data();
+  query.capacity = max_entries;
+  const std::vector<simd::NodeEntry>& entries = candidates_->entries;
+  if (kernels().survivors(tree_.view(), entries.data(), static_cast<int>(entries.size()), query)) {
+    children_.entries.resize(static_cast<std::size_t>(query.count));
+  } else {
+    children_.entries = entries;
+  }
 }
 
 const Lattice& CellClassifier::lattice(const GridCell& cell) {
   if (lattice_known_) {
     return lattice_;
   }
-  const bool direct = ruling_.size() <= direct_evaluation_limit;
+  find_ruling_entries(cell);
   for (int i = 0; i < 27; ++i) {
-    if (i % 3 == 1 || i / 3 % 3 == 1 || i / 9 == 1) {
-      const Vec3 p = lattice_point(cell, i);
-      lattice_[i] = direct ? size_by_ruling_facets(p, Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1))
-                           : tree_.size(p, size_limit_);
+    if (i % 3 != 1 && i / 3 % 3 != 1 && i / 9 != 1) {
+      continue;
     }
+    if (i == 13) {
+      lattice_[i] = ruling_.size;
+      continue;
+    }
+    const LatticePlace place = lattice_place(cell, i);
+    const std::uint64_t key = place.key();
+    Known& known = known_[(key * 0x9E3779B97F4A7C15ull) >> 50];
+    if (known.key != key) {
+      known = {key, smallest(cube_.at(place), children_.entries, ruling_.facet).size};
+    }
+    lattice_[i] = known.size;
   }
   for (int corner = 0; corner < 8; ++corner) {
     lattice_[lattice_index_of_corner(corner)] = cell.corner_values[corner];

@@ -9,77 +9,89 @@
 
 namespace meshgrow {
 
-/// Decides whether a cell of the background grid may be a leaf, and which facets its children need.
+/// What a cell inherits from the one that it is a part of.
+struct CellCandidates {
+  std::vector<simd::NodeEntry> entries;  ///< every facet that can rule in the cell is below them
+  FacetTree::Smallest nearby;            ///< a facet that is likely to rule
+};
+
+/// Decides whether a cell of the background grid may be a leaf, and what its children need to know.
 ///
-/// Each facet's size h_f = S0 + α · distance is convex, so its tangent plane T_f at the cell's
-/// centre is a lower bound of it everywhere. Linear functions are reproduced by trilinear
-/// interpolation, whose weights are not negative; hence an order between T_f and other values at
-/// the eight corners holds in the whole cell. Three proofs rest on that, with g the facet that
-/// rules at the centre:
+/// The size S0 + α · distance from a facet is convex, so its tangent plane T_f at the cell's centre
+/// is a lower bound of it everywhere; so is that of a box of facets, with the smallest start size
+/// in it. Linear functions are reproduced by trilinear interpolation, whose weights are not
+/// negative; hence an order between T_f and other values at the eight corners holds in the whole
+/// cell. Three proofs rest on that, with g the facet that rules at the centre:
 ///
 /// - f never rules in the cell if T_f ≥ h_g at the corners (h_f ≥ T_f ≥ interpolated h_g ≥ h_g);
-/// - the interpolant u of the exact corner values stays below (1 + t) h_f if (1 + t) T_f ≥ u at the
-///   corners;
-/// - h ≤ (1 + t) u if h_g ≤ (1 + t) u at the corners (h ≤ h_g ≤ interpolated h_g).
+/// - the interpolant u of values at the corners stays below (1 + t) h_f if (1 + t) T_f ≥ u at the
+///   corners. Exact values may be too large by (1 + t)² even so: they are made smaller as needed;
+/// - h ≤ (1 + 2t) u if h_g ≤ (1 + 2t) u at the corners (h ≤ h_g ≤ interpolated h_g).
 ///
 /// Beside them the Lipschitz bound |u − h| ≤ (√3/2) α s for a cell of edge s, which ends refinement
-/// whatever the facets are. Uses scratch memory: one object per thread.
+/// whatever the facets are. Boxes are descended into only as far as they do not decide. Uses
+/// scratch memory: one object per thread.
 class CellClassifier {
  public:
   enum class Verdict { interpolate, keep_facets, split };
 
-  CellClassifier(const FacetTree& tree, double size_limit, double tolerance,
+  CellClassifier(const FacetTree& tree, const GridCube& cube, double size_limit, double tolerance,
                  std::size_t facets_per_exact_leaf);
 
-  /// `candidates`: every facet of the tree that can rule somewhere in the cell.
-  Verdict classify(const GridCell& cell, const std::vector<std::uint32_t>& candidates);
+  Verdict classify(const GridCell& cell, const CellCandidates& candidates);
 
-  /// After classify: the candidates that can still rule in the cell.
-  const std::vector<std::uint32_t>& ruling_facets() const { return ruling_; }
+  /// After a verdict interpolate: what the corner values are to be multiplied by, at most 1.
+  double scale() const { return scale_; }
 
-  /// After a verdict keep_facets: facets whose minimum is within (1 + t) of the field in the cell.
-  const std::vector<std::uint32_t>& leaf_facets() const { return leaf_facets_; }
+  /// After a verdict keep_facets: the facet that rules at the centre (or none), and entries; the
+  /// minimum of their facets is within (1 + t) of the field in the cell.
+  std::uint32_t ruling_facet() const { return ruling_.facet; }
+  const std::vector<simd::NodeEntry>& leaf_entries() const { return leaf_entries_; }
 
-  /// After classify: exact sizes at the corners of the cell's children.
+  /// After a verdict split: what the cell's children inherit.
+  const CellCandidates& children_candidates() const { return children_; }
+
+  /// After classify, above the greatest depth: exact sizes at the corners of the cell's children.
   const Lattice& lattice(const GridCell& cell);
 
+  /// Exact size at a corner, without a cell around it.
+  double size_at(const LatticePlace& place) const {
+    return tree_.size(cube_.at(place), size_limit_);
+  }
+
  private:
-  struct Tangent {
-    double at_centre = 0.0;
-    Vec3 slope_times_half_edge = Vec3::Zero();
-
-    double at_corner(int i) const {
-      return at_centre + (i & 1 ? slope_times_half_edge.x() : -slope_times_half_edge.x()) +
-             (i & 2 ? slope_times_half_edge.y() : -slope_times_half_edge.y()) +
-             (i & 4 ? slope_times_half_edge.z() : -slope_times_half_edge.z());
-    }
-    double smallest() const { return at_centre - slope_times_half_edge.cwiseAbs().sum(); }
-  };
-
-  void compute_tangents(const GridCell& cell, const std::vector<std::uint32_t>& candidates);
-  void drop_never_ruling(const std::vector<std::uint32_t>& candidates);
+  simd::CellCorners corners_of(const GridCell& cell) const;
+  FacetTree::Smallest smallest(const Vec3& p, const std::vector<simd::NodeEntry>& entries,
+                               std::uint32_t nearby) const;
   bool bounded_by_lipschitz(const GridCell& cell) const;
-  bool never_too_coarse(const GridCell& cell) const;
+  bool never_too_coarse(const GridCell& cell);
   bool not_much_too_fine(const GridCell& cell);
   bool few_facets_suffice();
-
-  /// The exact size at p, whose place in the cell is `local`, in half edges from the centre.
-  double size_by_ruling_facets(const Vec3& p, const Vec3& local) const;
+  void find_ruling_entries(const GridCell& cell);
 
   const FacetTree& tree_;
+  GridCube cube_;
   double size_limit_;
   double tolerance_;
   std::size_t facets_per_exact_leaf_;
 
-  std::vector<Tangent> tangents_;
-  std::vector<std::uint32_t> ruling_;
-  std::vector<Tangent> ruling_tangents_;
-  std::vector<std::uint32_t> leaf_facets_;
-  /// First among the candidates, then, once some are dropped, among the ruling facets.
-  std::int64_t best_ = -1;              ///< candidate that rules at the centre; -1: the size limit
-  std::array<double, 8> best_corners_;  ///< its sizes at the corners: upper bounds of the field
+  const CellCandidates* candidates_ = nullptr;
+  FacetTree::Smallest ruling_;            ///< at the centre; no facet: the size limit
+  std::array<double, 8> ruling_corners_;  ///< its sizes at the corners: upper bounds of the field
+  simd::CellCorners kernel_cell_;
+  double scale_ = 1.0;
+  CellCandidates children_;
+  std::vector<simd::NodeEntry> leaf_entries_;
+  bool entries_known_ = false;
   Lattice lattice_;
   bool lattice_known_ = false;
+
+  /// Sizes at places of the lattice that neighbouring cells ask for again.
+  struct Known {
+    std::uint64_t key = ~0ull;
+    double size = 0.0;
+  };
+  std::vector<Known> known_;
 };
 
 }  // namespace meshgrow

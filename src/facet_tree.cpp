@@ -157,7 +157,8 @@ FacetTree::Closest FacetTree::closest_facet(const Vec3& p) const {
 }
 
 std::size_t FacetTree::memory_bytes() const {
-  return facets_.capacity() * sizeof(SizedFacet) + layout_.order.capacity() * sizeof(layout_.order[0]) +
+  return facets_.capacity() * sizeof(SizedFacet) +
+         layout_.order.capacity() * sizeof(layout_.order[0]) +
          layout_.nodes.capacity() * (sizeof(simd::WideNode) + sizeof(float)) +
          layout_.blocks.capacity() * sizeof(simd::FacetBlock);
 }

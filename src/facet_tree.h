@@ -36,8 +36,8 @@ class FacetTree {
 
   struct Smallest {
     static constexpr std::uint32_t no_facet = 0xFFFFFFFFu;
-    double size = infinity;           ///< model units
-    std::uint32_t facet = no_facet;   ///< index into facets(); of equal ones the first
+    double size = infinity;          ///< model units
+    std::uint32_t facet = no_facet;  ///< index into facets(); of equal ones the first
   };
 
   /// The smallest among the facets below `entries`, if it is below that of `known`: this is where

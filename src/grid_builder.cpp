@@ -1,7 +1,6 @@
 #include "grid_builder.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "error.h"
 #include "parallel.h"
@@ -10,26 +9,29 @@ namespace meshgrow {
 
 namespace {
 
-/// 2^-20 of the cube; a cell still undecided there asks the tree.
-constexpr int max_depth = 20;
-
 /// So many open cells are enough to keep all threads busy to the end.
 constexpr std::size_t open_cells_wanted = 512;
 
-/// Taken off the tolerance: rounding of corner values to float (6e-8) and of the tangents'
-/// direction.
-constexpr double rounding_reserve = 1e-6;
-
-using Verdict = CellClassifier::Verdict;
+/// Taken off the tolerance: rounding of corner values, and of what is proven about them, to float.
+constexpr double rounding_reserve = 1e-5;
 
 }  // namespace
 
 GridBuilder::GridBuilder(BackgroundGrid& grid, const GridOptions& options)
-    : grid_(grid), options_(options), tolerance_(options.tolerance - rounding_reserve) {}
+    : grid_(grid), options_(options), tolerance_(options.tolerance - rounding_reserve) {
+  classifiers_.resize(
+      static_cast<std::size_t>(options.threads > 0 ? options.threads : default_threads()));
+}
 
-CellClassifier GridBuilder::classifier() const {
-  return CellClassifier(*grid_.tree_, grid_.size_limit_, tolerance_,
-                        static_cast<std::size_t>(options_.facets_per_exact_leaf));
+CellClassifier& GridBuilder::own_classifier() {
+  std::unique_ptr<CellClassifier>& own =
+      classifiers_.at(static_cast<std::size_t>(omp_get_thread_num()));
+  if (!own) {
+    own =
+        std::make_unique<CellClassifier>(*grid_.tree_, grid_.cube_, grid_.size_limit_, tolerance_,
+                                         static_cast<std::size_t>(options_.facets_per_exact_leaf));
+  }
+  return *own;
 }
 
 void GridBuilder::build() {
@@ -39,8 +41,7 @@ void GridBuilder::build() {
   parallel_for(
       open.size(), options_.threads,
       [&](std::size_t i) {
-        CellClassifier own = classifier();
-        roots[i] = build_subtree(open[i].cell, *open[i].candidates, own, parts[i]);
+        roots[i] = build_subtree(open[i].cell, *open[i].candidates, own_classifier(), parts[i]);
       },
       [&](std::size_t done) {
         if (options_.progress && done < open.size()) {
@@ -51,50 +52,51 @@ void GridBuilder::build() {
     append_subtree(parts[i], roots[i], open[i]);
     parts[i] = Nodes();
   }
-  grid_.nodes_.exact_begin.push_back(static_cast<std::uint32_t>(grid_.nodes_.exact_facets.size()));
+  grid_.nodes_.exact_begin.push_back(static_cast<std::uint32_t>(grid_.nodes_.exact_data.size()));
   if (options_.progress) {
     options_.progress(1.0);
   }
 }
 
 std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
-  auto all = std::make_shared<Facets>(grid_.tree_->facets().size());
-  std::iota(all->begin(), all->end(), 0U);
+  auto all = std::make_shared<CellCandidates>();
+  all->entries = {FacetTree::root};
   OpenCell root;
-  root.cell.half_edge = 0.5 * grid_.edge_;
-  root.cell.centre = grid_.origin_ + Vec3::Constant(root.cell.half_edge);
   root.candidates = all;
   for (int i = 0; i < 8; ++i) {
-    root.cell.corner_values[i] = grid_.tree_->size(root.cell.corner(i), grid_.size_limit_);
+    root.cell.corner_values[i] = own_classifier().size_at(root.cell.corner(i));
   }
 
   // Block 0 stands above the root: its first child is the root's own place.
   Nodes& nodes = grid_.nodes_;
   nodes.blocks.emplace_back();
   std::vector<OpenCell> open{root};
-  while (!open.empty() && open.size() < open_cells_wanted && open.front().cell.depth < max_depth) {
+  while (!open.empty() && open.size() < open_cells_wanted &&
+         open.front().cell.depth < max_grid_depth) {
     struct Classified {
       Verdict verdict;
-      std::shared_ptr<const Facets> facets;
+      Nodes leaf;  ///< that one only
+      NodeCode code;
+      std::shared_ptr<const CellCandidates> candidates;
       Lattice lattice;
     };
     std::vector<Classified> classified(open.size());
     parallel_for(open.size(), options_.threads, [&](std::size_t i) {
-      CellClassifier own = classifier();
+      CellClassifier& own = own_classifier();
       Classified& result = classified[i];
       result.verdict = own.classify(open[i].cell, *open[i].candidates);
       if (result.verdict == Verdict::split) {
         result.lattice = own.lattice(open[i].cell);
-        result.facets = std::make_shared<Facets>(own.ruling_facets());
+        result.candidates = std::make_shared<CellCandidates>(own.children_candidates());
       } else {
-        result.facets = std::make_shared<Facets>(own.leaf_facets());
+        result.code = append_leaf(result.verdict, open[i].cell, own, result.leaf);
       }
     });
     std::vector<OpenCell> next;
     for (std::size_t i = 0; i < open.size(); ++i) {
       const Classified& result = classified[i];
       if (result.verdict != Verdict::split) {
-        set_code(open[i], append_leaf(result.verdict, open[i].cell, *result.facets, nodes));
+        append_subtree(result.leaf, result.code, open[i]);
         continue;
       }
       const std::size_t block = nodes.blocks.size();
@@ -102,7 +104,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       set_code(open[i], BackgroundGrid::code(NodeKind::block, block));
       for (int child = 0; child < 8; ++child) {
         next.push_back(
-            {child_cell(open[i].cell, child, result.lattice), result.facets, block, child});
+            {child_cell(open[i].cell, child, result.lattice), result.candidates, block, child});
       }
     }
     open = std::move(next);
@@ -110,18 +112,19 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   return open;
 }
 
-GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell, const Facets& candidates,
+GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
+                                                 const CellCandidates& candidates,
                                                  CellClassifier& classifier, Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
   const Verdict verdict = classifier.classify(cell, candidates);
   if (verdict != Verdict::split) {
-    return append_leaf(verdict, cell, classifier.leaf_facets(), nodes);
+    return append_leaf(verdict, cell, classifier, nodes);
   }
-  if (cell.depth == max_depth) {
+  if (cell.depth == max_grid_depth) {
     return BackgroundGrid::code(NodeKind::tree, 0);
   }
   const Lattice lattice = classifier.lattice(cell);
-  const Facets ruling = classifier.ruling_facets();
+  const CellCandidates ruling = classifier.children_candidates();
   const std::size_t block = nodes.blocks.size();
   nodes.blocks.emplace_back();
   for (int child = 0; child < 8; ++child) {
@@ -133,17 +136,19 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell, const Fac
 }
 
 GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& cell,
-                                               const Facets& leaf_facets, Nodes& nodes) {
+                                               const CellClassifier& classifier, Nodes& nodes) {
   nodes.depth = std::max(nodes.depth, cell.depth);
   if (verdict == Verdict::interpolate) {
     BackgroundGrid::CornerValues values;
     std::transform(cell.corner_values.begin(), cell.corner_values.end(), values.begin(),
-                   [](double value) { return static_cast<float>(value); });
+                   [&](double value) { return static_cast<float>(value * classifier.scale()); });
     nodes.corners.push_back(values);
     return BackgroundGrid::code(NodeKind::interpolated, nodes.corners.size() - 1);
   }
-  nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_facets.size()));
-  nodes.exact_facets.insert(nodes.exact_facets.end(), leaf_facets.begin(), leaf_facets.end());
+  nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_data.size()));
+  nodes.exact_data.push_back(classifier.ruling_facet());
+  nodes.exact_data.insert(nodes.exact_data.end(), classifier.leaf_entries().begin(),
+                          classifier.leaf_entries().end());
   return BackgroundGrid::code(NodeKind::exact, nodes.exact_begin.size() - 1);
 }
 
@@ -152,8 +157,8 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
   const std::size_t first_block = nodes.blocks.size();
   const std::size_t first_corners = nodes.corners.size();
   const std::size_t first_exact = nodes.exact_begin.size();
-  const std::size_t first_facet = nodes.exact_facets.size();
-  if (first_facet + part.exact_facets.size() > 0xFFFFFFFFu) {
+  const std::size_t first_datum = nodes.exact_data.size();
+  if (first_datum + part.exact_data.size() > 0xFFFFFFFFu) {
     throw Error("The background grid has too many exact cells: raise its tolerance.");
   }
   const auto moved = [&](NodeCode code) {
@@ -175,10 +180,9 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
   }
   nodes.corners.insert(nodes.corners.end(), part.corners.begin(), part.corners.end());
   for (const std::uint32_t begin : part.exact_begin) {
-    nodes.exact_begin.push_back(static_cast<std::uint32_t>(first_facet + begin));
+    nodes.exact_begin.push_back(static_cast<std::uint32_t>(first_datum + begin));
   }
-  nodes.exact_facets.insert(nodes.exact_facets.end(), part.exact_facets.begin(),
-                            part.exact_facets.end());
+  nodes.exact_data.insert(nodes.exact_data.end(), part.exact_data.begin(), part.exact_data.end());
   nodes.depth = std::max(nodes.depth, part.depth);
   set_code(place, moved(part_root));
 }

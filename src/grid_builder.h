@@ -19,31 +19,32 @@ class GridBuilder {
   void build();
 
  private:
-  using Facets = std::vector<std::uint32_t>;
   using NodeCode = BackgroundGrid::NodeCode;
   using NodeKind = BackgroundGrid::NodeKind;
   using Nodes = BackgroundGrid::Nodes;
+  using Verdict = CellClassifier::Verdict;
 
   /// A cell still to be classified, and the place in `blocks` that waits for its code.
   struct OpenCell {
     GridCell cell;
-    std::shared_ptr<const Facets> candidates;
+    std::shared_ptr<const CellCandidates> candidates;
     std::size_t block = 0;
     int child = 0;
   };
 
-  CellClassifier classifier() const;
+  CellClassifier& own_classifier();
   std::vector<OpenCell> build_top();
-  NodeCode build_subtree(const GridCell& cell, const Facets& candidates, CellClassifier& classifier,
-                         Nodes& nodes) const;
-  static NodeCode append_leaf(CellClassifier::Verdict verdict, const GridCell& cell,
-                              const Facets& leaf_facets, Nodes& nodes);
+  NodeCode build_subtree(const GridCell& cell, const CellCandidates& candidates,
+                         CellClassifier& classifier, Nodes& nodes) const;
+  static NodeCode append_leaf(Verdict verdict, const GridCell& cell,
+                              const CellClassifier& classifier, Nodes& nodes);
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);
   void set_code(const OpenCell& place, NodeCode code);
 
   BackgroundGrid& grid_;
   const GridOptions& options_;
   double tolerance_;
+  std::vector<std::unique_ptr<CellClassifier>> classifiers_;  ///< one a thread
 };
 
 }  // namespace meshgrow

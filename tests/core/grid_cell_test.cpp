@@ -9,32 +9,40 @@ namespace {
 
 double linear(const Vec3& p) { return 3.0 + 2.0 * p.x() - 5.0 * p.y() + 0.5 * p.z(); }
 
+/// Its cells of depth 4 have the edge 0.5.
+const GridCube cube{Vec3(-4, -3, -2), 8.0};
+
+Vec3 corner(const GridCell& cell, int i) { return cube.at(cell.corner(i)); }
+
+Vec3 lattice_point(const GridCell& cell, int i) { return cube.at(lattice_place(cell, i)); }
+
+/// Of edge 0.5 around (1, 2, 3).
 GridCell cell_of_linear_values() {
   GridCell cell;
-  cell.centre = Vec3(1, 2, 3);
-  cell.half_edge = 0.25;
   cell.depth = 4;
+  cell.lowest = {19 * (1u << 15), 19 * (1u << 15), 19 * (1u << 15)};
   for (int i = 0; i < 8; ++i) {
-    cell.corner_values[i] = linear(cell.corner(i));
+    cell.corner_values[i] = linear(corner(cell, i));
   }
   return cell;
 }
 
 TEST(GridCell, CornersFollowTheBits) {
   const GridCell cell = cell_of_linear_values();
-  EXPECT_EQ(cell.corner(0), Vec3(0.75, 1.75, 2.75));
-  EXPECT_EQ(cell.corner(1), Vec3(1.25, 1.75, 2.75));
-  EXPECT_EQ(cell.corner(2), Vec3(0.75, 2.25, 2.75));
-  EXPECT_EQ(cell.corner(4), Vec3(0.75, 1.75, 3.25));
-  EXPECT_EQ(cell.corner(7), Vec3(1.25, 2.25, 3.25));
+  EXPECT_EQ(corner(cell, 0), Vec3(0.75, 1.75, 2.75));
+  EXPECT_EQ(corner(cell, 1), Vec3(1.25, 1.75, 2.75));
+  EXPECT_EQ(corner(cell, 2), Vec3(0.75, 2.25, 2.75));
+  EXPECT_EQ(corner(cell, 4), Vec3(0.75, 1.75, 3.25));
+  EXPECT_EQ(corner(cell, 7), Vec3(1.25, 2.25, 3.25));
 }
 
 TEST(GridCell, LatticeContainsTheCorners) {
   const GridCell cell = cell_of_linear_values();
   for (int i = 0; i < 8; ++i) {
-    EXPECT_EQ(lattice_point(cell, lattice_index_of_corner(i)), cell.corner(i));
+    EXPECT_EQ(lattice_point(cell, lattice_index_of_corner(i)), corner(cell, i));
   }
-  EXPECT_EQ(lattice_point(cell, 13), cell.centre);
+  EXPECT_EQ(lattice_point(cell, 13), cell.centre(cube));
+  EXPECT_EQ(cell.centre(cube), Vec3(1, 2, 3));
   EXPECT_EQ(lattice_point(cell, 1), Vec3(1.0, 1.75, 2.75));
 }
 
@@ -46,12 +54,12 @@ TEST(GridCell, ChildrenShareTheLattice) {
   }
   for (int child = 0; child < 8; ++child) {
     const GridCell half = child_cell(cell, child, lattice);
-    EXPECT_EQ(half.half_edge, 0.125);
+    EXPECT_EQ(half.half_edge(cube), 0.125);
     EXPECT_EQ(half.depth, 5);
-    EXPECT_EQ(half.corner(child), cell.corner(child));
-    EXPECT_EQ(half.corner(7 - child), cell.centre);
+    EXPECT_EQ(corner(half, child), corner(cell, child));
+    EXPECT_EQ(corner(half, 7 - child), cell.centre(cube));
     for (int i = 0; i < 8; ++i) {
-      EXPECT_EQ(half.corner_values[i], linear(half.corner(i))) << child << ", corner " << i;
+      EXPECT_EQ(half.corner_values[i], linear(corner(half, i))) << child << ", corner " << i;
     }
   }
 }
@@ -65,7 +73,7 @@ TEST(GridCell, TrilinearInterpolationGivesCornersAndLinearFunctions) {
   test::Random random(1);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 local = test::random_in_box(random, Box(Vec3::Zero(), Vec3::Ones()));
-    const Vec3 p = cell.corner(0) + 2.0 * cell.half_edge * local;
+    const Vec3 p = corner(cell, 0) + 2.0 * cell.half_edge(cube) * local;
     ASSERT_NEAR(trilinear(cell.corner_values, local.x(), local.y(), local.z()), linear(p), 1e-13)
         << "seed 1";
   }
