@@ -21,6 +21,11 @@ constexpr int max_entries = 2048;
 constexpr int max_leaf_entries = 32;
 
 constexpr std::size_t known_sizes = 1 << 14;
+constexpr int known_sizes_shift = 64 - 14;
+
+constexpr int lattice_centre = 13;
+
+bool is_between_corners(int i) { return i % 3 == 1 || i / 3 % 3 == 1 || i / 9 == 1; }
 
 float as_reciprocal(double size) {
   return static_cast<float>(std::min(1.0 / size, static_cast<double>(FLT_MAX)));
@@ -56,13 +61,7 @@ CellClassifier::Verdict CellClassifier::classify(const GridCell& cell,
   kernel_cell_.half_edge = static_cast<float>(cell.half_edge(cube_) / tree_.unit());
   const Vec3 place = (centre - tree_.centre()) / tree_.unit();
   std::copy(place.data(), place.data() + 3, kernel_cell_.centre);
-  for (int i = 0; i < 8; ++i) {
-    ruling_corners_[i] =
-        ruling_.facet == FacetTree::Smallest::no_facet
-            ? size_limit_
-            : std::min(size_limit_,
-                       tree_.facets()[ruling_.facet].size_at(cube_.at(cell.corner(i))));
-  }
+  find_ruling_corners();
   if (never_too_coarse(cell) && not_much_too_fine(cell)) {
     return Verdict::interpolate;
   }
@@ -122,17 +121,39 @@ bool CellClassifier::not_much_too_fine(const GridCell& cell) {
         trilinear(cell.corner_values, 0.5 * (i % 3), 0.5 * (i / 3 % 3), 0.5 * (i / 9));
     return (1.0 - tolerance_) * exact <= scale_ * interpolated;
   };
-  constexpr int centre = 13;
-  if (!fine_enough(ruling_.size, centre)) {
+  if (!fine_enough(ruling_.size, lattice_centre)) {
     return false;
   }
-  const Lattice& exact = lattice(cell);
+  // What the facet that rules at the centre allows is allowed all the more by the field.
+  std::array<int, 27> doubtful;
+  int doubtful_count = 0;
   for (int i = 0; i < 27; ++i) {
-    if (!fine_enough(exact[i], i)) {
-      return false;
+    if (is_between_corners(i) && i != lattice_centre &&
+        !fine_enough(ruling_size(lattice_place(cell, i)), i)) {
+      doubtful[doubtful_count++] = i;
     }
   }
-  return true;
+  return std::all_of(doubtful.begin(), doubtful.begin() + doubtful_count,
+                     [&](int i) { return fine_enough(lattice_size(cell, i), i); });
+}
+
+void CellClassifier::find_ruling_corners() {
+  ruling_corners_.fill(size_limit_);
+  if (ruling_.facet == FacetTree::Smallest::no_facet) {
+    return;
+  }
+  alignas(32) std::array<float, 8> sizes;
+  kernels().corner_sizes(tree_.view().blocks[ruling_.facet / simd::lanes],
+                         static_cast<int>(ruling_.facet % simd::lanes), kernel_cell_, sizes.data());
+  for (int i = 0; i < 8; ++i) {
+    ruling_corners_[i] = std::min(size_limit_, sizes[i] * tree_.unit());
+  }
+}
+
+double CellClassifier::ruling_size(const LatticePlace& place) const {
+  return ruling_.facet == FacetTree::Smallest::no_facet
+             ? size_limit_
+             : std::min(size_limit_, tree_.facets()[ruling_.facet].size_at(cube_.at(place)));
 }
 
 bool CellClassifier::few_facets_suffice() {
@@ -192,26 +213,25 @@ void CellClassifier::find_ruling_entries(const GridCell& cell) {
   }
 }
 
+double CellClassifier::lattice_size(const GridCell& cell, int i) {
+  const LatticePlace place = lattice_place(cell, i);
+  const std::uint64_t key = place.key();
+  Known& known = known_[(key * 0x9E3779B97F4A7C15ull) >> known_sizes_shift];
+  if (known.key != key) {
+    find_ruling_entries(cell);
+    known = {key, smallest(cube_.at(place), children_.entries, ruling_.facet).size};
+  }
+  return known.size;
+}
+
 const Lattice& CellClassifier::lattice(const GridCell& cell) {
   if (lattice_known_) {
     return lattice_;
   }
-  find_ruling_entries(cell);
   for (int i = 0; i < 27; ++i) {
-    if (i % 3 != 1 && i / 3 % 3 != 1 && i / 9 != 1) {
-      continue;
+    if (is_between_corners(i)) {
+      lattice_[i] = i == lattice_centre ? ruling_.size : lattice_size(cell, i);
     }
-    if (i == 13) {
-      lattice_[i] = ruling_.size;
-      continue;
-    }
-    const LatticePlace place = lattice_place(cell, i);
-    const std::uint64_t key = place.key();
-    Known& known = known_[(key * 0x9E3779B97F4A7C15ull) >> 50];
-    if (known.key != key) {
-      known = {key, smallest(cube_.at(place), children_.entries, ruling_.facet).size};
-    }
-    lattice_[i] = known.size;
   }
   for (int corner = 0; corner < 8; ++corner) {
     lattice_[lattice_index_of_corner(corner)] = cell.corner_values[corner];

@@ -63,6 +63,10 @@ class CellClassifier {
   simd::CellCorners corners_of(const GridCell& cell) const;
   FacetTree::Smallest smallest(const Vec3& p, const std::vector<simd::NodeEntry>& entries,
                                std::uint32_t nearby) const;
+  void find_ruling_corners();
+  /// What the facet that rules at the centre gives: an upper bound of the field.
+  double ruling_size(const LatticePlace& place) const;
+  double lattice_size(const GridCell& cell, int i);
   bool bounded_by_lipschitz(const GridCell& cell) const;
   bool never_too_coarse(const GridCell& cell);
   bool not_much_too_fine(const GridCell& cell);

@@ -55,6 +55,8 @@ struct TreeKernels {
   const char* name;
   void (*least_size)(const WideTree&, const NodeEntry* entries, int count, LeastSize&);
   void (*least_ratio)(const WideTree&, const NodeEntry* entries, int count, LeastRatio&);
+  /// Upper bounds of the sizes that a facet of the block gives at the corners of the cell.
+  void (*corner_sizes)(const FacetBlock&, int lane, const CellCorners&, float* sizes);
   /// False if there is no room for all or there are too many facets.
   bool (*survivors)(const WideTree&, const NodeEntry* entries, int count, Survivors&);
 };

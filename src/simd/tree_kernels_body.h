@@ -44,18 +44,55 @@ inline Float8 lower_bounds(const WideNode& node, float slope, const Place& p) {
   return load(node.start_size) + all(slope) * length(way_from_boxes(node, p));
 }
 
-/// A place as the facets of a block see it.
-struct BlockView {
+/// The facets of a block, one a lane.
+struct AllFacets {
+  const FacetBlock& block;
+  Place corner() const {
+    return {load(block.corner[0]), load(block.corner[1]), load(block.corner[2])};
+  }
+  Place along() const { return {load(block.along[0]), load(block.along[1]), load(block.along[2])}; }
+  Place across() const {
+    return {load(block.across[0]), load(block.across[1]), load(block.across[2])};
+  }
+  Float8 length() const { return load(block.length); }
+  Float8 foot() const { return load(block.foot); }
+  Float8 height() const { return load(block.height); }
+  Float8 start_size() const { return load(block.start_size); }
+  Float8 slope() const { return load(block.slope); }
+};
+
+/// One facet in all lanes.
+struct OneFacet {
+  const FacetBlock& block;
+  int lane;
+  Place corner() const { return place(block.corner); }
+  Place along() const { return place(block.along); }
+  Place across() const { return place(block.across); }
+  Float8 length() const { return all(block.length[lane]); }
+  Float8 foot() const { return all(block.foot[lane]); }
+  Float8 height() const { return all(block.height[lane]); }
+  Float8 start_size() const { return all(block.start_size[lane]); }
+  Float8 slope() const { return all(block.slope[lane]); }
+
+ private:
+  Place place(const float (&from)[3][lanes]) const {
+    return {all(from[0][lane]), all(from[1][lane]), all(from[2][lane])};
+  }
+};
+
+/// Places as facets see them, given relative to the origin of the facets' block.
+struct FacetView {
+  Place along, across;
   Float8 nx, ny, nz;  ///< normals
   Float8 dx, dy, dz;  ///< from the closest points to the place, in the facets' frames
   Float8 distance;
 
-  BlockView(const FacetBlock& block, const double* p) {
-    const Float8 px = all(static_cast<float>(p[0] - block.origin[0])) - load(block.corner[0]);
-    const Float8 py = all(static_cast<float>(p[1] - block.origin[1])) - load(block.corner[1]);
-    const Float8 pz = all(static_cast<float>(p[2] - block.origin[2])) - load(block.corner[2]);
-    const Float8 ax = load(block.along[0]), ay = load(block.along[1]), az = load(block.along[2]);
-    const Float8 cx = load(block.across[0]), cy = load(block.across[1]), cz = load(block.across[2]);
+  template <typename Facets>
+  FacetView(const Facets& facets, const Place& p) : along(facets.along()), across(facets.across()) {
+    const Place corner = facets.corner();
+    const Float8 px = p.x - corner.x, py = p.y - corner.y, pz = p.z - corner.z;
+    const Float8 ax = along.x, ay = along.y, az = along.z;
+    const Float8 cx = across.x, cy = across.y, cz = across.z;
     nx = ay * cz - az * cy;
     ny = az * cx - ax * cz;
     nz = ax * cy - ay * cx;
@@ -64,7 +101,7 @@ struct BlockView {
     dz = px * nx + py * ny + pz * nz;
 
     const Float8 zero = all(0.0f), one = all(1.0f), tiny = all(1e-36f);
-    const Float8 side = load(block.length), foot = load(block.foot), height = load(block.height);
+    const Float8 side = facets.length(), foot = facets.foot(), height = facets.height();
     // Along the longest side.
     dx = x - min(max(x, zero), side);
     dy = y;
@@ -96,12 +133,17 @@ struct BlockView {
     distance = sqrt(best + dz * dz);
   }
 
-  Place way(const FacetBlock& block) const {
-    return {dx * load(block.along[0]) + dy * load(block.across[0]) + dz * nx,
-            dx * load(block.along[1]) + dy * load(block.across[1]) + dz * ny,
-            dx * load(block.along[2]) + dy * load(block.across[2]) + dz * nz};
+  Place way() const {
+    return {dx * along.x + dy * across.x + dz * nx, dx * along.y + dy * across.y + dz * ny,
+            dx * along.z + dy * across.z + dz * nz};
   }
 };
+
+inline FacetView view_of(const FacetBlock& block, const double* p) {
+  return FacetView(AllFacets{block}, {all(static_cast<float>(p[0] - block.origin[0])),
+                                      all(static_cast<float>(p[1] - block.origin[1])),
+                                      all(static_cast<float>(p[2] - block.origin[2]))});
+}
 
 // ==== Descent
 
@@ -141,14 +183,14 @@ constexpr int max_levels = 12;
 /// first. `enter(child)` gives the level of a node, `ask(block)` looks at a block, `limit()` is
 /// what bounds have to be below, or equal to.
 template <typename Enter, typename Ask, typename Limit>
-inline void descend(Level* levels, Enter enter, Ask ask, Limit limit) {
+inline bool descend(Level* levels, Enter enter, Ask ask, Limit limit) {
   int top = 0;
   for (;;) {
     Level& level = levels[top];
     const unsigned mask = level.mask & bits(level.bounds <= all(limit()));
     if (mask == 0) {
       if (top-- == 0) {
-        return;
+        return true;
       }
       continue;
     }
@@ -157,7 +199,7 @@ inline void descend(Level* levels, Enter enter, Ask ask, Limit limit) {
     const std::uint32_t child = level.node->child[lane];
     if ((child & WideNode::is_block) != 0) {
       if (!ask(child & ~WideNode::is_block)) {
-        return;
+        return false;
       }
     } else {
       levels[++top] = enter(child);
@@ -165,21 +207,39 @@ inline void descend(Level* levels, Enter enter, Ask ask, Limit limit) {
   }
 }
 
-/// The entry to begin with: it has the least bound of a child.
-template <typename Enter>
-inline int most_promising(const NodeEntry* entries, int count, Enter enter) {
-  int best = 0;
-  float least = 3.4e38f;
-  for (int i = 0; i < count && count > 1; ++i) {
-    const Level level = enter(entries[i] >> 8);
-    const unsigned mask = entries[i] & all_children;
-    const float bound = level.bounds[least_lane(level.bounds, mask)];
-    if (bound < least) {
-      least = bound;
-      best = i;
+/// Entries looked at together, so that the most promising comes first.
+constexpr int entries_at_once = 32;
+
+/// Descends from all entries.
+template <typename Enter, typename Ask, typename Limit>
+inline void descend_from(const NodeEntry* entries, int count, Enter enter, Ask ask, Limit limit) {
+  Level levels[max_levels];
+  Level starts[entries_at_once];
+  for (int first = 0; first < count; first += entries_at_once) {
+    const int in_group = count - first < entries_at_once ? count - first : entries_at_once;
+    int kept = 0;
+    int best = 0;
+    float least = 3.4e38f;
+    for (int i = 0; i < in_group; ++i) {
+      Level& start = starts[kept];
+      start = enter(entries[first + i] >> 8);
+      start.mask = entries[first + i] & bits(start.bounds <= all(limit()));
+      if (start.mask != 0) {
+        const float bound = start.bounds[least_lane(start.bounds, start.mask)];
+        if (bound < least) {
+          least = bound;
+          best = kept;
+        }
+        ++kept;
+      }
+    }
+    for (int i = 0; i < kept; ++i) {
+      levels[0] = starts[i == 0 ? best : i <= best ? i - 1 : i];
+      if (!descend(levels, enter, ask, limit)) {
+        return;
+      }
     }
   }
-  return best;
 }
 
 // ==== Least size
@@ -203,7 +263,7 @@ inline void add_candidate(LeastSize& query, std::uint32_t facet, float lower_bou
 }
 
 inline void ask_block(const FacetBlock& block, LeastSize& query) {
-  const BlockView view(block, query.place);
+  const FacetView view = view_of(block, query.place);
   const Float8 slope = load(block.slope);
   const Float8 size = load(block.start_size) + slope * view.distance;
   const Float8 error = slope * all(block.place_error);
@@ -238,14 +298,7 @@ void least_size(const WideTree& tree, const NodeEntry* entries, int count, Least
     ask_block(tree.blocks[block], query);
     return true;
   };
-  Level levels[max_levels];
-  const int first = most_promising(entries, count, enter);
-  for (int i = 0; i < count; ++i) {
-    const NodeEntry entry = entries[i == 0 ? first : i <= first ? i - 1 : i];
-    levels[0] = enter(entry >> 8);
-    levels[0].mask = entry & all_children;
-    descend(levels, enter, ask, [&] { return query.limit; });
-  }
+  descend_from(entries, count, enter, ask, [&] { return query.limit; });
 }
 
 // ==== Tangent planes at the corners of a cell
@@ -283,9 +336,9 @@ struct BoxRatios {
 };
 
 inline Float8 block_ratios(const FacetBlock& block, const CellCorners& cell) {
-  const BlockView view(block, cell.centre);
+  const FacetView view = view_of(block, cell.centre);
   const Float8 slope = load(block.slope);
-  const Place way = view.way(block);
+  const Place way = view.way();
   // Rounding moves the place and turns the direction: both are taken off the plane.
   const Float8 error = all(block.place_error) + view.distance * all(5e-7f);
   const Float8 distance = max(view.distance, all(1e-30f));
@@ -310,14 +363,26 @@ void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, Leas
     query.ratio = least < query.ratio ? least : query.ratio;
     return query.ratio >= query.enough;
   };
-  Level levels[max_levels];
-  const int first = most_promising(entries, count, enter);
-  for (int i = 0; i < count && query.ratio >= query.enough; ++i) {
-    const NodeEntry entry = entries[i == 0 ? first : i <= first ? i - 1 : i];
-    levels[0] = enter(entry >> 8);
-    levels[0].mask = entry & all_children;
-    descend(levels, enter, ask, [&] { return query.ratio; });
-  }
+  descend_from(entries, count, enter, ask, [&] { return query.ratio; });
+}
+
+// ==== Sizes at the corners of a cell
+
+void corner_sizes(const FacetBlock& block, int lane, const CellCorners& cell, float* sizes) {
+  const Float8 x_sign = {-1, 1, -1, 1, -1, 1, -1, 1};
+  const Float8 y_sign = {-1, -1, 1, 1, -1, -1, 1, 1};
+  const Float8 z_sign = {-1, -1, -1, -1, 1, 1, 1, 1};
+  const Float8 h = all(cell.half_edge);
+  const auto relative = [&](int axis) {
+    return all(static_cast<float>(cell.centre[axis] - block.origin[axis]));
+  };
+  const OneFacet facet{block, lane};
+  const FacetView view(
+      facet, {relative(0) + h * x_sign, relative(1) + h * y_sign, relative(2) + h * z_sign});
+  const Float8 slope = facet.slope();
+  *reinterpret_cast<Float8*>(sizes) =
+      (facet.start_size() + slope * (view.distance + all(block.place_error))) *
+      all(1.0f + relative_rounding);
 }
 
 // ==== Survivors
@@ -387,7 +452,7 @@ bool survivors(const WideTree& tree, const NodeEntry* entries, int count, Surviv
 }  // namespace
 
 extern const TreeKernels kernels;
-const TreeKernels kernels = {KERNEL_NAME, least_size, least_ratio, survivors};
+const TreeKernels kernels = {KERNEL_NAME, least_size, least_ratio, corner_sizes, survivors};
 
 }  // namespace KERNEL_NAMESPACE
 }  // namespace meshgrow::simd
