@@ -39,9 +39,10 @@ FacetTree::FacetTree(SizedFacets facets, int threads) {
   }
 }
 
-Box FacetTree::child_box(const simd::WideNode& node, int lane) const {
-  const Vec3 lower(node.lower[0][lane], node.lower[1][lane], node.lower[2][lane]);
-  const Vec3 upper(node.upper[0][lane], node.upper[1][lane], node.upper[2][lane]);
+Box FacetTree::child_box(std::uint32_t node, int lane) const {
+  const WideBoxes& boxes = layout_.boxes[node];
+  const Vec3 lower(boxes.lower[0][lane], boxes.lower[1][lane], boxes.lower[2][lane]);
+  const Vec3 upper(boxes.upper[0][lane], boxes.upper[1][lane], boxes.upper[2][lane]);
   return Box(layout_.centre + layout_.unit * lower, layout_.centre + layout_.unit * upper);
 }
 
@@ -159,7 +160,7 @@ FacetTree::Closest FacetTree::closest_facet(const Vec3& p) const {
 std::size_t FacetTree::memory_bytes() const {
   return facets_.capacity() * sizeof(SizedFacet) +
          layout_.order.capacity() * sizeof(layout_.order[0]) +
-         layout_.nodes.capacity() * (sizeof(simd::WideNode) + sizeof(float)) +
+         layout_.nodes.capacity() * (sizeof(simd::WideNode) + sizeof(WideBoxes) + sizeof(float)) +
          layout_.blocks.capacity() * sizeof(simd::FacetBlock);
 }
 

@@ -121,7 +121,7 @@ class FacetTree {
   /// Entries of a stack that holds up to seven siblings a level, of eleven levels.
   static constexpr std::size_t stack_size = 96;
 
-  Box child_box(const simd::WideNode& node, int lane) const;
+  Box child_box(std::uint32_t node, int lane) const;
   double reference_size(const Vec3& p, double upper_bound) const;
 
   template <typename LowerBound, typename FacetValue>
@@ -200,7 +200,7 @@ FacetTree::Closest FacetTree::best_first(double upper_bound, LowerBound lower_bo
     const std::size_t first = top;
     for (int lane = 0; lane < simd::lanes && node.start_size[lane] < infinity; ++lane) {
       const Entry child{lower_bound(1 + static_cast<std::size_t>(entry.child) * simd::lanes + lane,
-                                    child_box(node, lane)),
+                                    child_box(entry.child, lane)),
                         node.child[lane]};
       if (child.bound < best.distance) {
         std::size_t place = top++;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "oriented_box.h"
 #include "parallel.h"
 
 namespace meshgrow {
@@ -53,10 +54,16 @@ float rounded_up(double x) { return -rounded_down(-x); }
 
 /// What a node knows of one child.
 struct Summary {
+  OrientedBox oriented;
+  Spread spread;
   float lower[3] = {infinity, infinity, infinity};
   float upper[3] = {-infinity, -infinity, -infinity};
   float start_size = infinity;
   float slope = infinity;
+
+  Box box() const {
+    return Box(Vec3(lower[0], lower[1], lower[2]), Vec3(upper[0], upper[1], upper[2]));
+  }
 
   void add(const Summary& other) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -65,6 +72,7 @@ struct Summary {
     }
     start_size = std::min(start_size, other.start_size);
     slope = std::min(slope, other.slope);
+    spread.add(other.spread);
   }
 };
 
@@ -80,7 +88,9 @@ class TreeBuilder {
     find_frame();
     const std::uint32_t blocks = blocks_for(count);
     layout_.nodes.resize(nodes_for(blocks));
+    layout_.boxes.resize(layout_.nodes.size());
     layout_.slopes.resize(layout_.nodes.size());
+    node_summaries_.resize(layout_.nodes.size());
     layout_.blocks.resize(blocks);
     split_top({0, count, 0});
     parallel_for(tasks_.size(), threads_, [&](std::size_t i) { build_subtree(tasks_[i]); });
@@ -117,7 +127,6 @@ class TreeBuilder {
   Summary fill_block(std::uint32_t index, std::uint32_t first, std::uint32_t count);
   Summary fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
                     const Vec3& origin, double& reach) const;
-  Summary summary_of(std::uint32_t node) const;
   Vec3 scaled(const Vec3& p) const { return (p - layout_.centre) / layout_.unit; }
 
   const SizedFacets& facets_;
@@ -128,6 +137,7 @@ class TreeBuilder {
   std::vector<Range> top_;
   /// Of blocks, for the nodes above them.
   std::vector<Summary> block_summaries_;
+  std::vector<Summary> node_summaries_;
 };
 
 void TreeBuilder::find_frame() {
@@ -234,40 +244,36 @@ void TreeBuilder::build_subtree(const Range& range) {
   finish_node(range);
 }
 
-Summary TreeBuilder::summary_of(std::uint32_t index) const {
-  const WideNode& node = layout_.nodes[index];
-  Summary summary;
-  for (std::uint32_t lane = 0; lane < lanes && node.start_size[lane] < infinity; ++lane) {
-    Summary child;
-    for (int axis = 0; axis < 3; ++axis) {
-      child.lower[axis] = node.lower[axis][lane];
-      child.upper[axis] = node.upper[axis][lane];
-    }
-    child.start_size = node.start_size[lane];
-    summary.add(child);
-  }
-  summary.slope = layout_.slopes[index];
-  return summary;
-}
-
 void TreeBuilder::finish_node(const Range& range) {
   WideNode& node = layout_.nodes[range.node];
+  WideBoxes& boxes = layout_.boxes[range.node];
   node = WideNode();
   std::fill(node.start_size, node.start_size + lanes, infinity);
-  float slope = infinity;
+  Summary all;
+  std::array<OrientedBox, lanes> below;
+  std::uint32_t children = 0;
   for_each_child(range, [&](std::uint32_t lane, const Range& child) {
     const bool is_block = child.blocks() == 1;
-    const Summary summary =
-        is_block ? block_summaries_[child.first / lanes] : summary_of(child.node);
+    const Summary& summary =
+        is_block ? block_summaries_[child.first / lanes] : node_summaries_[child.node];
+    const OrientedBox& oriented = below[children++] = summary.oriented;
     for (int axis = 0; axis < 3; ++axis) {
-      node.lower[axis][lane] = summary.lower[axis];
-      node.upper[axis][lane] = summary.upper[axis];
+      boxes.lower[axis][lane] = summary.lower[axis];
+      boxes.upper[axis][lane] = summary.upper[axis];
+      node.centre[axis][lane] = static_cast<float>(oriented.centre[axis]);
+      node.first_axis[axis][lane] = static_cast<float>(oriented.axes(axis, 0));
+      node.second_axis[axis][lane] = static_cast<float>(oriented.axes(axis, 1));
+      // Rounding moves the place and the centre, and turns the axes.
+      const double margin = box_margin + 1e-6 * oriented.half_sizes.maxCoeff();
+      node.half_sizes[axis][lane] = rounded_up(oriented.half_sizes[axis] + margin);
     }
     node.start_size[lane] = summary.start_size;
     node.child[lane] = is_block ? child.first / lanes | WideNode::is_block : child.node;
-    slope = std::min(slope, summary.slope);
+    all.add(summary);
   });
-  layout_.slopes[range.node] = slope;
+  all.oriented = oriented_box(below.data(), children, all.spread, all.box());
+  layout_.slopes[range.node] = all.slope;
+  node_summaries_[range.node] = all;
 }
 
 Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::uint32_t count) {
@@ -281,9 +287,19 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   std::copy(scaled_origin.data(), scaled_origin.data() + 3, block.origin);
   double reach = 0.0;
   Summary summary;
+  std::array<Vec3, 3 * lanes> corners;
+  std::size_t corner_count = 0;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
-    summary.add(fill_lane(block, lane, facets_[items_[first + lane].facet], origin, reach));
+    const SizedFacet& facet = facets_[items_[first + lane].facet];
+    summary.add(fill_lane(block, lane, facet, origin, reach));
+    for (int k = 0; k < facet.facet.corner_count; ++k) {
+      corners[corner_count++] = scaled(facet.facet.corners[k]);
+    }
   }
+  for (std::size_t i = 0; i < corner_count; ++i) {
+    summary.spread.add(corners[i]);
+  }
+  summary.oriented = oriented_box(corners.data(), corner_count, summary.spread, summary.box());
   // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times.
   block.place_error = static_cast<float>(1e-6 * reach + 1e-17);
   return summary;

@@ -9,6 +9,12 @@
 
 namespace meshgrow {
 
+/// Boxes of the children of a node, enlarged a little; in the units of the nodes.
+struct WideBoxes {
+  float lower[3][simd::lanes];
+  float upper[3][simd::lanes];
+};
+
 /// The nodes and blocks of a FacetTree, and the order of facets that goes with them: those of a
 /// block are adjacent. Every node but those along one edge of the tree has eight children, every
 /// block but the last eight facets.
@@ -18,7 +24,8 @@ struct TreeLayout {
   double unit = 1.0;  ///< of the nodes' and blocks' lengths and sizes, in model units
   std::vector<std::uint32_t> order;  ///< original index of each facet
   std::vector<simd::WideNode> nodes;
-  std::vector<float> slopes;  ///< smallest below each node
+  std::vector<WideBoxes> boxes;  ///< of each node
+  std::vector<float> slopes;     ///< smallest below each node
   std::vector<simd::FacetBlock> blocks;
 };
 

@@ -24,6 +24,8 @@ inline Float8 max(Float8 a, Float8 b) {
 #endif
 }
 
+inline Float8 absolute(Float8 x) { return max(x, -x); }
+
 inline Float8 sqrt(Float8 x) {
 #ifdef __AVX__
   return _mm256_sqrt_ps(x);

@@ -22,6 +22,12 @@ struct Place {
   Float8 x, y, z;
 };
 
+inline Float8 dot(const Place& a, const Place& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+inline Place cross(const Place& a, const Place& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 inline Place float_place(const double* p) {
   return {all(static_cast<float>(p[0])), all(static_cast<float>(p[1])),
           all(static_cast<float>(p[2]))};
@@ -29,19 +35,32 @@ inline Place float_place(const double* p) {
 
 // ==== Boxes and facets
 
-/// From the nearest point of each box to the place.
-inline Place way_from_boxes(const WideNode& node, const Place& p) {
-  return {p.x - min(max(p.x, load(node.lower[0])), load(node.upper[0])),
-          p.y - min(max(p.y, load(node.lower[1])), load(node.upper[1])),
-          p.z - min(max(p.z, load(node.lower[2])), load(node.upper[2]))};
+/// How far outside a box a place is along one of its axes: below 0 on the negative side.
+inline Float8 excess(Float8 along, Float8 half_size) {
+  return along - min(max(along, -half_size), half_size);
 }
 
-inline Float8 length(const Place& way) {
-  return sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
-}
+/// A place as the boxes around the children of a node see it.
+struct BoxView {
+  Place first, second, third;  ///< axes
+  Place away;                  ///< from the centres to the place
+  Float8 x, y, z;  ///< from the nearest points of the boxes to the place, along the axes
+
+  BoxView(const WideNode& node, const Place& p)
+      : first{load(node.first_axis[0]), load(node.first_axis[1]), load(node.first_axis[2])},
+        second{load(node.second_axis[0]), load(node.second_axis[1]), load(node.second_axis[2])},
+        third(cross(first, second)) {
+    away = {p.x - load(node.centre[0]), p.y - load(node.centre[1]), p.z - load(node.centre[2])};
+    x = excess(dot(away, first), load(node.half_sizes[0]));
+    y = excess(dot(away, second), load(node.half_sizes[1]));
+    z = excess(dot(away, third), load(node.half_sizes[2]));
+  }
+
+  Float8 distance() const { return sqrt(x * x + y * y + z * z); }
+};
 
 inline Float8 lower_bounds(const WideNode& node, float slope, const Place& p) {
-  return load(node.start_size) + all(slope) * length(way_from_boxes(node, p));
+  return load(node.start_size) + all(slope) * BoxView(node, p).distance();
 }
 
 /// The facets of a block, one a lane.
@@ -326,12 +345,20 @@ struct BoxRatios {
   Float8 ratios;
 
   BoxRatios(const WideNode& node, float slope, const CellCorners& cell, const Place& centre) {
-    const Place way = way_from_boxes(node, centre);
-    const Float8 distance = length(way);
-    const Float8 steepness = all(slope) / max(distance, all(1e-30f));
+    const BoxView view(node, centre);
+    const Float8 distance = view.distance();
     bounds = load(node.start_size) + all(slope) * distance;
-    ratios = least_ratios(cell, bounds, {way.x * steepness, way.y * steepness, way.z * steepness});
+    const Float8 steepness = all(slope) / max(distance, all(1e-30f));
+    const Float8 x = steepness * view.x, y = steepness * view.y, z = steepness * view.z;
+    const Place slopes = {x * view.first.x + y * view.second.x + z * view.third.x,
+                          x * view.first.y + y * view.second.y + z * view.third.y,
+                          x * view.first.z + y * view.second.z + z * view.third.z};
+    // Close to the box, rounding turns the direction: that is taken off the plane.
+    const Float8 reach =
+        max(max(absolute(view.away.x), absolute(view.away.y)), absolute(view.away.z));
+    const Float8 turned = steepness * reach * all(2e-6f * cell.half_edge);
     // An infinite start size gives infinite ratios, as no corner's reciprocal is 0.
+    ratios = least_ratios(cell, bounds - turned, slopes);
   }
 };
 
@@ -399,9 +426,9 @@ struct Collector {
     const BoxRatios boxes(node, tree.slopes[index], query.cell, centre);
     const Float8 nearest = boxes.bounds - all(tree.slopes[index] * half_diagonal);
     mask &= bits((boxes.ratios < all(1.0f)) & (nearest < all(query.largest)));
-    const Float8 edges = max(
-        max(load(node.upper[0]) - load(node.lower[0]), load(node.upper[1]) - load(node.lower[1])),
-        load(node.upper[2]) - load(node.lower[2]));
+    const Float8 edges =
+        max(max(load(node.half_sizes[0]), load(node.half_sizes[1])), load(node.half_sizes[2])) *
+        all(2.0f);
     const unsigned large = bits(edges > all(query.open_edge));
     unsigned kept = 0;
     for (unsigned rest = mask; rest != 0; rest &= rest - 1) {

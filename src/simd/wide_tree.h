@@ -14,12 +14,16 @@ constexpr int lanes = 8;
 struct alignas(64) WideNode {
   static constexpr std::uint32_t is_block = 0x80000000u;
 
-  float lower[3][lanes];  ///< of the boxes, which are enlarged by the rounding of a place to float
-  float upper[3][lanes];
+  // Around what is below each child there is a box that lies as its contents. It is enlarged by
+  // the rounding of a place to float. The third axis is the cross product of the others.
+  float centre[3][lanes];
+  float first_axis[3][lanes];
+  float second_axis[3][lanes];
+  float half_sizes[3][lanes];  ///< along the axes
   float start_size[lanes];     ///< smallest below the child; infinite where there is none
   std::uint32_t child[lanes];  ///< index of a node, or of a block with the bit is_block
 };
-static_assert(sizeof(WideNode) == 256, "four cache lines");
+static_assert(sizeof(WideNode) == 448, "seven cache lines");
 
 /// Eight facets, each in a frame of its own: the first corner is the origin, the longest side runs
 /// along x to (length, 0), the third corner stands above it at (foot, height). A segment has no
