@@ -48,41 +48,38 @@ CellClassifier::CellClassifier(const FacetTree& tree, const GridCube& cube, doub
       known_(known_sizes) {}
 
 CellClassifier::Verdict CellClassifier::classify(const GridCell& cell,
+                                                 const FacetTree::Smallest& ruling,
                                                  const CellCandidates& candidates) {
   candidates_ = &candidates;
-  lattice_known_ = false;
+  ruling_ = ruling;
   entries_known_ = false;
   scale_ = 1.0;
-  const Vec3 centre = cell.centre(cube_);
-  ruling_ = smallest(centre, candidates.entries, candidates.nearby.facet);
   if (bounded_by_lipschitz(cell)) {
     return Verdict::interpolate;
   }
   kernel_cell_.half_edge = static_cast<float>(cell.half_edge(cube_) / tree_.unit());
-  const Vec3 place = (centre - tree_.centre()) / tree_.unit();
+  const Vec3 place = (cell.centre(cube_) - tree_.centre()) / tree_.unit();
   std::copy(place.data(), place.data() + 3, kernel_cell_.centre);
   find_ruling_corners();
   if (never_too_coarse(cell) && not_much_too_fine(cell)) {
     return Verdict::interpolate;
   }
-  if (few_facets_suffice()) {
-    return Verdict::keep_facets;
-  }
-  find_ruling_entries(cell);
-  return Verdict::split;
+  return few_facets_suffice() ? Verdict::keep_facets : Verdict::split;
 }
 
-FacetTree::Smallest CellClassifier::smallest(const Vec3& p,
-                                             const std::vector<simd::NodeEntry>& entries,
-                                             std::uint32_t nearby) const {
-  FacetTree::Smallest known{size_limit_, FacetTree::Smallest::no_facet};
-  if (nearby != FacetTree::Smallest::no_facet) {
-    const double size = tree_.facets()[nearby].size_at(p);
+FacetTree::Smallest CellClassifier::smallest(const Vec3& p) const {
+  return tree_.smallest(p, &FacetTree::root, 1, {size_limit_, FacetTree::Smallest::no_facet});
+}
+
+/// A good guess to begin a search with: the facet that rules at the cell's centre.
+FacetTree::Smallest CellClassifier::known_at(const Vec3& p) const {
+  if (ruling_.facet != FacetTree::Smallest::no_facet) {
+    const double size = tree_.facets()[ruling_.facet].size_at(p);
     if (size < size_limit_) {
-      known = {size, nearby};
+      return {size, ruling_.facet};
     }
   }
-  return tree_.smallest(p, entries.data(), static_cast<int>(entries.size()), known);
+  return {size_limit_, FacetTree::Smallest::no_facet};
 }
 
 bool CellClassifier::bounded_by_lipschitz(const GridCell& cell) const {
@@ -99,7 +96,7 @@ bool CellClassifier::never_too_coarse(const GridCell& cell) {
   const double kept = 1.0 / (1.0 + tolerance_);
   query.ratio = static_cast<float>(kept);
   query.enough = static_cast<float>(kept * kept);
-  const std::vector<simd::NodeEntry>& entries = candidates_->entries;
+  const CellCandidates& entries = *candidates_;
   kernels().least_ratio(tree_.view(), entries.data(), static_cast<int>(entries.size()), query);
   if (query.ratio < static_cast<float>(kept)) {
     scale_ = query.ratio * (1.0 + tolerance_) * (1.0 - rounding);
@@ -133,8 +130,9 @@ bool CellClassifier::not_much_too_fine(const GridCell& cell) {
       doubtful[doubtful_count++] = i;
     }
   }
+  find_lattice_sizes(cell, doubtful.data(), doubtful_count);
   return std::all_of(doubtful.begin(), doubtful.begin() + doubtful_count,
-                     [&](int i) { return fine_enough(lattice_size(cell, i), i); });
+                     [&](int i) { return fine_enough(split_.lattice[i], i); });
 }
 
 void CellClassifier::find_ruling_corners() {
@@ -151,9 +149,7 @@ void CellClassifier::find_ruling_corners() {
 }
 
 double CellClassifier::ruling_size(const LatticePlace& place) const {
-  return ruling_.facet == FacetTree::Smallest::no_facet
-             ? size_limit_
-             : std::min(size_limit_, tree_.facets()[ruling_.facet].size_at(cube_.at(place)));
+  return known_at(cube_.at(place)).size;
 }
 
 bool CellClassifier::few_facets_suffice() {
@@ -176,7 +172,7 @@ bool CellClassifier::few_facets_suffice() {
   query.most_facets = static_cast<std::uint32_t>(facets_per_exact_leaf_);
   query.entries = leaf_entries_.data();
   query.capacity = max_leaf_entries;
-  const std::vector<simd::NodeEntry>& entries = candidates_->entries;
+  const CellCandidates& entries = *candidates_;
   if (!kernels().survivors(tree_.view(), entries.data(), static_cast<int>(entries.size()), query)) {
     return false;
   }
@@ -189,8 +185,8 @@ void CellClassifier::find_ruling_entries(const GridCell& cell) {
     return;
   }
   entries_known_ = true;
-  children_.nearby = ruling_;
-  children_.entries.resize(max_entries);
+  CellCandidates& kept = split_.candidates;
+  kept.resize(max_entries);
   simd::Survivors query;
   query.cell = kernel_cell_;
   double largest = 0.0;
@@ -203,41 +199,72 @@ void CellClassifier::find_ruling_entries(const GridCell& cell) {
   query.open_edge = static_cast<float>(open_edges * 2.0 * cell.half_edge(cube_) / tree_.unit());
   query.open_blocks = false;
   query.most_facets = ~0u;
-  query.entries = children_.entries.data();
+  query.entries = kept.data();
   query.capacity = max_entries;
-  const std::vector<simd::NodeEntry>& entries = candidates_->entries;
+  const CellCandidates& entries = *candidates_;
   if (kernels().survivors(tree_.view(), entries.data(), static_cast<int>(entries.size()), query)) {
-    children_.entries.resize(static_cast<std::size_t>(query.count));
+    kept.resize(static_cast<std::size_t>(query.count));
   } else {
-    children_.entries = entries;
+    kept = entries;
   }
 }
 
-double CellClassifier::lattice_size(const GridCell& cell, int i) {
-  const LatticePlace place = lattice_place(cell, i);
-  const std::uint64_t key = place.key();
-  Known& known = known_[(key * 0x9E3779B97F4A7C15ull) >> known_sizes_shift];
-  if (known.key != key) {
-    find_ruling_entries(cell);
-    known = {key, smallest(cube_.at(place), children_.entries, ruling_.facet).size};
-  }
-  return known.size;
-}
-
-const Lattice& CellClassifier::lattice(const GridCell& cell) {
-  if (lattice_known_) {
-    return lattice_;
-  }
-  for (int i = 0; i < 27; ++i) {
-    if (is_between_corners(i)) {
-      lattice_[i] = i == lattice_centre ? ruling_.size : lattice_size(cell, i);
+/// Asks for what is not known yet all at once.
+void CellClassifier::find_lattice_sizes(const GridCell& cell, const int* points, int count) {
+  std::array<int, 27> asked;
+  std::array<Vec3, 27> places;
+  std::array<FacetTree::Smallest, 27> found;
+  std::size_t asked_count = 0;
+  for (int k = 0; k < count; ++k) {
+    const LatticePlace place = lattice_place(cell, points[k]);
+    const Known& known = known_size(place);
+    if (known.key == place.key()) {
+      split_.lattice[points[k]] = known.size;
+    } else {
+      places[asked_count] = cube_.at(place);
+      found[asked_count] = known_at(places[asked_count]);
+      asked[asked_count++] = points[k];
     }
   }
-  for (int corner = 0; corner < 8; ++corner) {
-    lattice_[lattice_index_of_corner(corner)] = cell.corner_values[corner];
+  if (asked_count == 0) {
+    return;
   }
-  lattice_known_ = true;
-  return lattice_;
+  find_ruling_entries(cell);
+  tree_.smallest(places.data(), asked_count, split_.candidates.data(),
+                 static_cast<int>(split_.candidates.size()), found.data());
+  for (std::size_t k = 0; k < asked_count; ++k) {
+    split_.lattice[asked[k]] = found[k].size;
+    const LatticePlace place = lattice_place(cell, asked[k]);
+    known_size(place) = {place.key(), found[k].size};
+  }
+}
+
+CellClassifier::Known& CellClassifier::known_size(const LatticePlace& place) {
+  return known_[(place.key() * 0x9E3779B97F4A7C15ull) >> known_sizes_shift];
+}
+
+const CellClassifier::Split& CellClassifier::split(const GridCell& cell) {
+  find_ruling_entries(cell);
+  std::array<int, 27> between;
+  int count = 0;
+  for (int i = 0; i < 27; ++i) {
+    if (is_between_corners(i) && i != lattice_centre) {
+      between[count++] = i;
+    }
+  }
+  find_lattice_sizes(cell, between.data(), count);
+  split_.lattice[lattice_centre] = ruling_.size;
+  for (int corner = 0; corner < 8; ++corner) {
+    split_.lattice[lattice_index_of_corner(corner)] = cell.corner_values[corner];
+  }
+  std::array<Vec3, 8> centres;
+  for (int child = 0; child < 8; ++child) {
+    centres[child] = child_cell(cell, child, split_.lattice).centre(cube_);
+    split_.ruling[child] = known_at(centres[child]);
+  }
+  tree_.smallest(centres.data(), 8, split_.candidates.data(),
+                 static_cast<int>(split_.candidates.size()), split_.ruling.data());
+  return split_;
 }
 
 }  // namespace meshgrow

@@ -9,11 +9,8 @@
 
 namespace meshgrow {
 
-/// What a cell inherits from the one that it is a part of.
-struct CellCandidates {
-  std::vector<simd::NodeEntry> entries;  ///< every facet that can rule in the cell is below them
-  FacetTree::Smallest nearby;            ///< a facet that is likely to rule
-};
+/// Parts of the tree: every facet that can rule in a cell is below them.
+using CellCandidates = std::vector<simd::NodeEntry>;
 
 /// Decides whether a cell of the background grid may be a leaf, and what its children need to know.
 ///
@@ -38,7 +35,9 @@ class CellClassifier {
   CellClassifier(const FacetTree& tree, const GridCube& cube, double size_limit, double tolerance,
                  std::size_t facets_per_exact_leaf);
 
-  Verdict classify(const GridCell& cell, const CellCandidates& candidates);
+  /// `ruling`: the smallest size at the cell's centre; no facet: the size limit.
+  Verdict classify(const GridCell& cell, const FacetTree::Smallest& ruling,
+                   const CellCandidates& candidates);
 
   /// After a verdict interpolate: what the corner values are to be multiplied by, at most 1.
   double scale() const { return scale_; }
@@ -48,25 +47,25 @@ class CellClassifier {
   std::uint32_t ruling_facet() const { return ruling_.facet; }
   const std::vector<simd::NodeEntry>& leaf_entries() const { return leaf_entries_; }
 
-  /// After a verdict split: what the cell's children inherit.
-  const CellCandidates& children_candidates() const { return children_; }
+  /// What the children of a cell need.
+  struct Split {
+    CellCandidates candidates;
+    Lattice lattice;  ///< exact sizes at their corners
+    std::array<FacetTree::Smallest, 8> ruling;
+  };
 
-  /// After classify, above the greatest depth: exact sizes at the corners of the cell's children.
-  const Lattice& lattice(const GridCell& cell);
+  /// After a verdict split, above the greatest depth.
+  const Split& split(const GridCell& cell);
 
-  /// Exact size at a corner, without a cell around it.
-  double size_at(const LatticePlace& place) const {
-    return tree_.size(cube_.at(place), size_limit_);
-  }
+  /// Exact size, without a cell around the point.
+  FacetTree::Smallest smallest(const Vec3& p) const;
 
  private:
-  simd::CellCorners corners_of(const GridCell& cell) const;
-  FacetTree::Smallest smallest(const Vec3& p, const std::vector<simd::NodeEntry>& entries,
-                               std::uint32_t nearby) const;
+  FacetTree::Smallest known_at(const Vec3& p) const;
   void find_ruling_corners();
   /// What the facet that rules at the centre gives: an upper bound of the field.
   double ruling_size(const LatticePlace& place) const;
-  double lattice_size(const GridCell& cell, int i);
+  void find_lattice_sizes(const GridCell& cell, const int* points, int count);
   bool bounded_by_lipschitz(const GridCell& cell) const;
   bool never_too_coarse(const GridCell& cell);
   bool not_much_too_fine(const GridCell& cell);
@@ -84,17 +83,16 @@ class CellClassifier {
   std::array<double, 8> ruling_corners_;  ///< its sizes at the corners: upper bounds of the field
   simd::CellCorners kernel_cell_;
   double scale_ = 1.0;
-  CellCandidates children_;
   std::vector<simd::NodeEntry> leaf_entries_;
   bool entries_known_ = false;
-  Lattice lattice_;
-  bool lattice_known_ = false;
+  Split split_;
 
   /// Sizes at places of the lattice that neighbouring cells ask for again.
   struct Known {
     std::uint64_t key = ~0ull;
     double size = 0.0;
   };
+  Known& known_size(const LatticePlace& place);
   std::vector<Known> known_;
 };
 

@@ -69,56 +69,73 @@ double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inv
 
 /// One search: takes candidates from the kernel and decides in double.
 struct FacetTree::Search {
-  const FacetTree& tree;
-  const Vec3& p;
-  Smallest best;
-  simd::LeastSize query;
+  const FacetTree* tree;
+  const Vec3* p;
+  Smallest* best;
+  simd::LeastSize* query;
 
-  Search(const FacetTree& searched, const Vec3& point, const Smallest& known)
-      : tree(searched), p(point), best(known) {
-    const Vec3 place = (p - tree.layout_.centre) / tree.layout_.unit;
+  void begin() {
+    const Vec3 place = (*p - tree->layout_.centre) / tree->layout_.unit;
     for (int axis = 0; axis < 3; ++axis) {
-      query.place[axis] = place[axis];
+      query->place[axis] = place[axis];
     }
-    query.limit = limit();
-    query.context = this;
-    query.overflow = [](simd::LeastSize& full) { static_cast<Search*>(full.context)->decide(); };
+    query->limit = limit();
+    query->count = 0;
+    query->context = this;
+    query->overflow = [](simd::LeastSize& full) { static_cast<Search*>(full.context)->decide(); };
   }
 
   float limit() const {
-    const double scaled = best.size / tree.layout_.unit * (1.0 + relative_rounding);
+    const double scaled = best->size / tree->layout_.unit * (1.0 + relative_rounding);
     return scaled < FLT_MAX ? static_cast<float>(scaled) : FLT_MAX;
   }
 
   void decide() {
-    for (int i = 0; i < query.count; ++i) {
-      if (query.lower_bounds[i] <= query.limit) {
-        const std::uint32_t facet = query.facets[i];
-        const double size = tree.facets_[facet].size_at(p);
-        if (size < best.size || (size == best.size && facet < best.facet)) {
-          best = {size, facet};
+    for (int i = 0; i < query->count; ++i) {
+      if (query->lower_bounds[i] <= query->limit) {
+        const std::uint32_t facet = query->facets[i];
+        const double size = tree->facets_[facet].size_at(*p);
+        if (size < best->size || (size == best->size && facet < best->facet)) {
+          *best = {size, facet};
         }
       }
     }
-    query.count = 0;
-    query.limit = std::min(query.limit, limit());
+    query->count = 0;
+    query->limit = std::min(query->limit, limit());
   }
 };
 
 FacetTree::Smallest FacetTree::smallest(const Vec3& p, const simd::NodeEntry* entries, int count,
                                         const Smallest& known) const {
+  Smallest best = known;
+  smallest(&p, 1, entries, count, &best);
+  return best;
+}
+
+void FacetTree::smallest(const Vec3* points, std::size_t point_count,
+                         const simd::NodeEntry* entries, int count, Smallest* known) const {
   if (empty()) {
-    return known;
+    return;
   }
-  Search search(*this, p, known);
   static const simd::TreeKernels& kernels = simd::tree_kernels();
-  kernels.least_size(view(), entries, count, search.query);
-  search.decide();
-  return search.best;
+  constexpr std::size_t group = 4;
+  std::array<simd::LeastSize, group> queries;
+  std::array<Search, group> searches;
+  for (std::size_t first = 0; first < point_count; first += group) {
+    const std::size_t in_group = std::min(group, point_count - first);
+    for (std::size_t i = 0; i < in_group; ++i) {
+      searches[i] = {this, points + first + i, known + first + i, &queries[i]};
+      searches[i].begin();
+    }
+    kernels.least_sizes(view(), entries, count, queries.data(), static_cast<int>(in_group));
+    for (std::size_t i = 0; i < in_group; ++i) {
+      searches[i].decide();
+    }
+  }
 }
 
 double FacetTree::size(const Vec3& p, double upper_bound) const {
-  if (!((p - layout_.centre).cwiseAbs().maxCoeff() < farthest_for_float * layout_.unit)) {
+  if (!is_near_enough_for_float(p)) {
     return reference_size(p, upper_bound);
   }
   return smallest(p, &root, 1, {upper_bound, Smallest::no_facet}).size;
@@ -126,24 +143,28 @@ double FacetTree::size(const Vec3& p, double upper_bound) const {
 
 void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
                       double* sizes) const {
-  std::uint32_t previous = Smallest::no_facet;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& p = points[i];
-    if (!((p - layout_.centre).cwiseAbs().maxCoeff() < farthest_for_float * layout_.unit)) {
-      sizes[i] = reference_size(p, upper_bound);
-      continue;
-    }
-    Smallest known{upper_bound, Smallest::no_facet};
-    if (previous != Smallest::no_facet) {
-      const double size = facets_[previous].size_at(p);
-      if (size < upper_bound) {
-        known = {size, previous};
+  constexpr std::size_t group = 64;
+  std::array<Smallest, group> found;
+  for (std::size_t first = 0; first < count; first += group) {
+    const std::size_t in_group = std::min(group, count - first);
+    const Vec3* begin = points + first;
+    found.fill({upper_bound, Smallest::no_facet});
+    if (std::all_of(begin, begin + in_group,
+                    [this](const Vec3& p) { return is_near_enough_for_float(p); })) {
+      smallest(begin, in_group, &root, 1, found.data());
+    } else {
+      for (std::size_t i = 0; i < in_group; ++i) {
+        found[i].size = size(begin[i], upper_bound);
       }
     }
-    known = smallest(p, &root, 1, known);
-    sizes[i] = known.size;
-    previous = known.facet != Smallest::no_facet ? known.facet : previous;
+    for (std::size_t i = 0; i < in_group; ++i) {
+      sizes[first + i] = found[i].size;
+    }
   }
+}
+
+bool FacetTree::is_near_enough_for_float(const Vec3& p) const {
+  return (p - layout_.centre).cwiseAbs().maxCoeff() < farthest_for_float * layout_.unit;
 }
 
 double FacetTree::reference_size(const Vec3& p, double upper_bound) const {

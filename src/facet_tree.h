@@ -31,7 +31,7 @@ class FacetTree {
   /// p must be finite; model units. Float rules facets out, double decides among the rest.
   double size(const Vec3& p, double upper_bound = infinity) const;
 
-  /// The same for many points, faster where neighbours in the list are neighbours in space.
+  /// The same for many points, in less time each.
   void sizes(const Vec3* points, std::size_t count, double upper_bound, double* sizes) const;
 
   struct Smallest {
@@ -44,6 +44,10 @@ class FacetTree {
   /// the search begins, and what is answered otherwise.
   Smallest smallest(const Vec3& p, const simd::NodeEntry* entries, int count,
                     const Smallest& known) const;
+
+  /// The same for several points, in less time each. `known` on entry, the answers on return.
+  void smallest(const Vec3* points, std::size_t point_count, const simd::NodeEntry* entries,
+                int count, Smallest* known) const;
 
   /// Every facet is below it.
   static constexpr simd::NodeEntry root = simd::all_children;
@@ -121,6 +125,7 @@ class FacetTree {
   /// Entries of a stack that holds up to seven siblings a level, of eleven levels.
   static constexpr std::size_t stack_size = 96;
 
+  bool is_near_enough_for_float(const Vec3& p) const;
   Box child_box(std::uint32_t node, int lane) const;
   double reference_size(const Vec3& p, double upper_bound) const;
 

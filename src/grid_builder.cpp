@@ -41,7 +41,8 @@ void GridBuilder::build() {
   parallel_for(
       open.size(), options_.threads,
       [&](std::size_t i) {
-        roots[i] = build_subtree(open[i].cell, *open[i].candidates, own_classifier(), parts[i]);
+        roots[i] = build_subtree(open[i].cell, open[i].ruling, *open[i].candidates,
+                                 own_classifier(), parts[i]);
       },
       [&](std::size_t done) {
         if (options_.progress && done < open.size()) {
@@ -59,12 +60,12 @@ void GridBuilder::build() {
 }
 
 std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
-  auto all = std::make_shared<CellCandidates>();
-  all->entries = {FacetTree::root};
   OpenCell root;
-  root.candidates = all;
+  root.candidates = std::make_shared<CellCandidates>(1, FacetTree::root);
+  root.ruling = own_classifier().smallest(root.cell.centre(grid_.cube_));
   for (int i = 0; i < 8; ++i) {
-    root.cell.corner_values[i] = own_classifier().size_at(root.cell.corner(i));
+    root.cell.corner_values[i] =
+        own_classifier().smallest(grid_.cube_.at(root.cell.corner(i))).size;
   }
 
   // Block 0 stands above the root: its first child is the root's own place.
@@ -77,17 +78,15 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       Verdict verdict;
       Nodes leaf;  ///< that one only
       NodeCode code;
-      std::shared_ptr<const CellCandidates> candidates;
-      Lattice lattice;
+      CellClassifier::Split split;
     };
     std::vector<Classified> classified(open.size());
     parallel_for(open.size(), options_.threads, [&](std::size_t i) {
       CellClassifier& own = own_classifier();
       Classified& result = classified[i];
-      result.verdict = own.classify(open[i].cell, *open[i].candidates);
+      result.verdict = own.classify(open[i].cell, open[i].ruling, *open[i].candidates);
       if (result.verdict == Verdict::split) {
-        result.lattice = own.lattice(open[i].cell);
-        result.candidates = std::make_shared<CellCandidates>(own.children_candidates());
+        result.split = own.split(open[i].cell);
       } else {
         result.code = append_leaf(result.verdict, open[i].cell, own, result.leaf);
       }
@@ -102,9 +101,10 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       const std::size_t block = nodes.blocks.size();
       nodes.blocks.emplace_back();
       set_code(open[i], BackgroundGrid::code(NodeKind::block, block));
+      const auto candidates = std::make_shared<CellCandidates>(result.split.candidates);
       for (int child = 0; child < 8; ++child) {
-        next.push_back(
-            {child_cell(open[i].cell, child, result.lattice), result.candidates, block, child});
+        next.push_back({child_cell(open[i].cell, child, result.split.lattice),
+                        result.split.ruling[child], candidates, block, child});
       }
     }
     open = std::move(next);
@@ -113,23 +113,23 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
 }
 
 GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
+                                                 const FacetTree::Smallest& ruling,
                                                  const CellCandidates& candidates,
                                                  CellClassifier& classifier, Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
-  const Verdict verdict = classifier.classify(cell, candidates);
+  const Verdict verdict = classifier.classify(cell, ruling, candidates);
   if (verdict != Verdict::split) {
     return append_leaf(verdict, cell, classifier, nodes);
   }
   if (cell.depth == max_grid_depth) {
     return BackgroundGrid::code(NodeKind::tree, 0);
   }
-  const Lattice lattice = classifier.lattice(cell);
-  const CellCandidates ruling = classifier.children_candidates();
+  const CellClassifier::Split split = classifier.split(cell);
   const std::size_t block = nodes.blocks.size();
   nodes.blocks.emplace_back();
   for (int child = 0; child < 8; ++child) {
-    const NodeCode code =
-        build_subtree(child_cell(cell, child, lattice), ruling, classifier, nodes);
+    const NodeCode code = build_subtree(child_cell(cell, child, split.lattice), split.ruling[child],
+                                        split.candidates, classifier, nodes);
     nodes.blocks[block][child] = code;
   }
   return BackgroundGrid::code(NodeKind::block, block);

@@ -27,6 +27,7 @@ class GridBuilder {
   /// A cell still to be classified, and the place in `blocks` that waits for its code.
   struct OpenCell {
     GridCell cell;
+    FacetTree::Smallest ruling;
     std::shared_ptr<const CellCandidates> candidates;
     std::size_t block = 0;
     int child = 0;
@@ -34,8 +35,9 @@ class GridBuilder {
 
   CellClassifier& own_classifier();
   std::vector<OpenCell> build_top();
-  NodeCode build_subtree(const GridCell& cell, const CellCandidates& candidates,
-                         CellClassifier& classifier, Nodes& nodes) const;
+  NodeCode build_subtree(const GridCell& cell, const FacetTree::Smallest& ruling,
+                         const CellCandidates& candidates, CellClassifier& classifier,
+                         Nodes& nodes) const;
   static NodeCode append_leaf(Verdict verdict, const GridCell& cell,
                               const CellClassifier& classifier, Nodes& nodes);
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);

@@ -53,7 +53,9 @@ struct Survivors {
 
 struct TreeKernels {
   const char* name;
-  void (*least_size)(const WideTree&, const NodeEntry* entries, int count, LeastSize&);
+  /// Several places at once take less time each.
+  void (*least_sizes)(const WideTree&, const NodeEntry* entries, int count, LeastSize* queries,
+                      int query_count);
   void (*least_ratio)(const WideTree&, const NodeEntry* entries, int count, LeastRatio&);
   /// Upper bounds of the sizes that a facet of the block gives at the corners of the cell.
   void (*corner_sizes)(const FacetBlock&, int lane, const CellCorners&, float* sizes);

@@ -198,68 +198,75 @@ struct Level {
 
 constexpr int max_levels = 12;
 
-/// Visits the children of the top level and what is below them, always the most promising one
-/// first. `enter(child)` gives the level of a node, `ask(block)` looks at a block, `limit()` is
-/// what bounds have to be below, or equal to.
-template <typename Enter, typename Ask, typename Limit>
-inline bool descend(Level* levels, Enter enter, Ask ask, Limit limit) {
-  int top = 0;
-  for (;;) {
-    Level& level = levels[top];
-    const unsigned mask = level.mask & bits(level.bounds <= all(limit()));
-    if (mask == 0) {
-      if (top-- == 0) {
-        return true;
+/// Entries looked at together, so that the most promising comes first.
+constexpr int entries_at_once = 32;
+
+/// A search on its way. `Search` has enter(child), the level of a node; ask(block), which looks at
+/// a block and is false once the search is over; and limit(), which bounds have to be below, or
+/// equal to.
+template <typename Search>
+struct Descent {
+  Search search;
+  int top = -1;  ///< level; -1: take the next start
+  int next = 0;
+  int starts_count = 0;
+  Level levels[max_levels];
+  Level starts[entries_at_once];
+
+  /// The first start is the one with the least bound of a child.
+  void begin(const NodeEntry* entries, int count) {
+    top = -1;
+    next = 0;
+    starts_count = 0;
+    int best = 0;
+    float least = 3.4e38f;
+    for (int i = 0; i < count; ++i) {
+      Level& start = starts[starts_count];
+      start = search.enter(entries[i] >> 8);
+      start.mask = entries[i] & bits(start.bounds <= all(search.limit()));
+      if (start.mask == 0) {
+        continue;
       }
-      continue;
+      if (count > 1) {
+        const float bound = start.bounds[least_lane(start.bounds, start.mask)];
+        if (bound < least) {
+          least = bound;
+          best = starts_count;
+        }
+      }
+      ++starts_count;
+    }
+    if (best != 0) {
+      const Level first = starts[0];
+      starts[0] = starts[best];
+      starts[best] = first;
+    }
+  }
+
+  /// Visits the most promising child that is left. False at the end.
+  bool step() {
+    if (top < 0) {
+      if (next == starts_count) {
+        return false;
+      }
+      levels[top = 0] = starts[next++];
+    }
+    Level& level = levels[top];
+    const unsigned mask = level.mask & bits(level.bounds <= all(search.limit()));
+    if (mask == 0) {
+      --top;
+      return true;
     }
     const int lane = least_lane(level.bounds, mask);
     level.mask = mask & ~(1u << lane);
     const std::uint32_t child = level.node->child[lane];
     if ((child & WideNode::is_block) != 0) {
-      if (!ask(child & ~WideNode::is_block)) {
-        return false;
-      }
-    } else {
-      levels[++top] = enter(child);
+      return search.ask(child & ~WideNode::is_block);
     }
+    levels[++top] = search.enter(child);
+    return true;
   }
-}
-
-/// Entries looked at together, so that the most promising comes first.
-constexpr int entries_at_once = 32;
-
-/// Descends from all entries.
-template <typename Enter, typename Ask, typename Limit>
-inline void descend_from(const NodeEntry* entries, int count, Enter enter, Ask ask, Limit limit) {
-  Level levels[max_levels];
-  Level starts[entries_at_once];
-  for (int first = 0; first < count; first += entries_at_once) {
-    const int in_group = count - first < entries_at_once ? count - first : entries_at_once;
-    int kept = 0;
-    int best = 0;
-    float least = 3.4e38f;
-    for (int i = 0; i < in_group; ++i) {
-      Level& start = starts[kept];
-      start = enter(entries[first + i] >> 8);
-      start.mask = entries[first + i] & bits(start.bounds <= all(limit()));
-      if (start.mask != 0) {
-        const float bound = start.bounds[least_lane(start.bounds, start.mask)];
-        if (bound < least) {
-          least = bound;
-          best = kept;
-        }
-        ++kept;
-      }
-    }
-    for (int i = 0; i < kept; ++i) {
-      levels[0] = starts[i == 0 ? best : i <= best ? i - 1 : i];
-      if (!descend(levels, enter, ask, limit)) {
-        return;
-      }
-    }
-  }
-}
+};
 
 // ==== Least size
 
@@ -307,17 +314,49 @@ inline void ask_block(const FacetBlock& block, LeastSize& query) {
   }
 }
 
-void least_size(const WideTree& tree, const NodeEntry* entries, int count, LeastSize& query) {
-  const Place p = float_place(query.place);
-  const auto enter = [&](std::uint32_t index) {
-    const WideNode& node = tree.nodes[index];
-    return Level{lower_bounds(node, tree.slopes[index], p), &node, all_children};
-  };
-  const auto ask = [&](std::uint32_t block) {
-    ask_block(tree.blocks[block], query);
+struct LeastSizeSearch {
+  const WideTree* tree;
+  LeastSize* query;
+  Place place;
+
+  Level enter(std::uint32_t index) const {
+    const WideNode& node = tree->nodes[index];
+    return {lower_bounds(node, tree->slopes[index], place), &node, all_children};
+  }
+  bool ask(std::uint32_t block) const {
+    ask_block(tree->blocks[block], *query);
     return true;
-  };
-  descend_from(entries, count, enter, ask, [&] { return query.limit; });
+  }
+  float limit() const { return query->limit; }
+};
+
+/// Searches that go on by turns: while one waits for its numbers, the others have theirs.
+constexpr int searches_at_once = 4;
+
+void least_sizes(const WideTree& tree, const NodeEntry* entries, int count, LeastSize* queries,
+                 int query_count) {
+  Descent<LeastSizeSearch> descents[searches_at_once];
+  for (int first_query = 0; first_query < query_count; first_query += searches_at_once) {
+    const int together =
+        query_count - first_query < searches_at_once ? query_count - first_query : searches_at_once;
+    for (int first = 0; first < count; first += entries_at_once) {
+      const int in_group = count - first < entries_at_once ? count - first : entries_at_once;
+      Descent<LeastSizeSearch>* open[searches_at_once];
+      for (int i = 0; i < together; ++i) {
+        LeastSize& query = queries[first_query + i];
+        open[i] = &descents[i];
+        descents[i].search = {&tree, &query, float_place(query.place)};
+        descents[i].begin(entries + first, in_group);
+      }
+      for (int left = together; left > 0;) {
+        for (int i = 0; i < left; ++i) {
+          if (!open[i]->step()) {
+            open[i--] = open[--left];
+          }
+        }
+      }
+    }
+  }
 }
 
 // ==== Tangent planes at the corners of a cell
@@ -377,20 +416,33 @@ inline Float8 block_ratios(const FacetBlock& block, const CellCorners& cell) {
   return least_ratios(cell, at_centre, {way.x * steepness, way.y * steepness, way.z * steepness});
 }
 
-void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
-  const Place centre = float_place(query.cell.centre);
-  const auto enter = [&](std::uint32_t index) {
-    const WideNode& node = tree.nodes[index];
-    return Level{BoxRatios(node, tree.slopes[index], query.cell, centre).ratios, &node,
-                 all_children};
-  };
-  const auto ask = [&](std::uint32_t block) {
-    const Float8 ratios = block_ratios(tree.blocks[block], query.cell);
+struct LeastRatioSearch {
+  const WideTree* tree;
+  LeastRatio* query;
+  Place centre;
+
+  Level enter(std::uint32_t index) const {
+    const WideNode& node = tree->nodes[index];
+    return {BoxRatios(node, tree->slopes[index], query->cell, centre).ratios, &node, all_children};
+  }
+  bool ask(std::uint32_t block) const {
+    const Float8 ratios = block_ratios(tree->blocks[block], query->cell);
     const float least = ratios[least_lane(ratios, all_children)];
-    query.ratio = least < query.ratio ? least : query.ratio;
-    return query.ratio >= query.enough;
-  };
-  descend_from(entries, count, enter, ask, [&] { return query.ratio; });
+    query->ratio = least < query->ratio ? least : query->ratio;
+    return query->ratio >= query->enough;
+  }
+  float limit() const { return query->ratio; }
+};
+
+void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
+  Descent<LeastRatioSearch> descent;
+  descent.search = {&tree, &query, float_place(query.cell.centre)};
+  for (int first = 0; first < count && query.ratio >= query.enough; first += entries_at_once) {
+    descent.begin(entries + first,
+                  count - first < entries_at_once ? count - first : entries_at_once);
+    while (descent.step()) {
+    }
+  }
 }
 
 // ==== Sizes at the corners of a cell
@@ -479,7 +531,7 @@ bool survivors(const WideTree& tree, const NodeEntry* entries, int count, Surviv
 }  // namespace
 
 extern const TreeKernels kernels;
-const TreeKernels kernels = {KERNEL_NAME, least_size, least_ratio, corner_sizes, survivors};
+const TreeKernels kernels = {KERNEL_NAME, least_sizes, least_ratio, corner_sizes, survivors};
 
 }  // namespace KERNEL_NAMESPACE
 }  // namespace meshgrow::simd
