@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "error.h"
-#include "parallel.h"
 
 namespace meshgrow {
 
@@ -26,14 +25,8 @@ FacetTree::FacetTree(SizedFacets facets, int threads) {
   if (facets.empty()) {
     return;
   }
-  layout_ = layout_tree(facets, threads);
-  facets_.resize(facets.size());
-  constexpr std::size_t chunk = 1 << 14;
-  parallel_for((facets.size() + chunk - 1) / chunk, threads, [&](std::size_t c) {
-    for (std::size_t i = c * chunk; i < std::min(facets.size(), (c + 1) * chunk); ++i) {
-      facets_[i] = facets[layout_.order[i]];
-    }
-  });
+  facets_ = std::move(facets);
+  layout_ = layout_tree(facets_, threads);
   for (const SizedFacet& facet : facets_) {
     largest_slope_ = std::max(largest_slope_, facet.slope);
   }
@@ -118,7 +111,7 @@ void FacetTree::smallest(const Vec3* points, std::size_t point_count,
     return;
   }
   static const simd::TreeKernels& kernels = simd::tree_kernels();
-  constexpr std::size_t group = 4;
+  constexpr std::size_t group = 8;
   std::array<simd::LeastSize, group> queries;
   std::array<Search, group> searches;
   for (std::size_t first = 0; first < point_count; first += group) {

@@ -54,25 +54,17 @@ float rounded_up(double x) { return -rounded_down(-x); }
 
 /// What a node knows of one child.
 struct Summary {
+  Box box;
   OrientedBox oriented;
   Spread spread;
-  float lower[3] = {infinity, infinity, infinity};
-  float upper[3] = {-infinity, -infinity, -infinity};
   float start_size = infinity;
   float slope = infinity;
 
-  Box box() const {
-    return Box(Vec3(lower[0], lower[1], lower[2]), Vec3(upper[0], upper[1], upper[2]));
-  }
-
   void add(const Summary& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], other.lower[axis]);
-      upper[axis] = std::max(upper[axis], other.upper[axis]);
-    }
+    box.extend(other.box);
+    spread.add(other.spread);
     start_size = std::min(start_size, other.start_size);
     slope = std::min(slope, other.slope);
-    spread.add(other.spread);
   }
 };
 
@@ -80,7 +72,7 @@ struct Summary {
 /// beforehand and subtrees can be built side by side.
 class TreeBuilder {
  public:
-  TreeBuilder(const SizedFacets& facets, int threads, TreeLayout& layout)
+  TreeBuilder(SizedFacets& facets, int threads, TreeLayout& layout)
       : facets_(facets), threads_(threads), layout_(layout) {}
 
   void build() {
@@ -93,13 +85,11 @@ class TreeBuilder {
     node_summaries_.resize(layout_.nodes.size());
     layout_.blocks.resize(blocks);
     split_top({0, count, 0});
-    parallel_for(tasks_.size(), threads_, [&](std::size_t i) { build_subtree(tasks_[i]); });
+    parallel_for(tasks_.size(), threads_, [&](std::size_t i) { split_subtree(tasks_[i]); });
+    bring_into_order();
+    parallel_for(tasks_.size(), threads_, [&](std::size_t i) { finish_subtree(tasks_[i]); });
     for (std::size_t i = top_.size(); i-- > 0;) {
       finish_node(top_[i]);
-    }
-    layout_.order.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      layout_.order[i] = items_[i].facet;
     }
   }
 
@@ -118,19 +108,23 @@ class TreeBuilder {
 
   void find_frame();
   void split_top(const Range& range);
-  void build_subtree(const Range& range);
+  void split_children(const Range& range);
+  void split_subtree(const Range& range);
+  void bring_into_order();
+  void finish_subtree(const Range& range);
   void finish_node(const Range& range);
   template <typename Visit>
   void for_each_child(const Range& range, Visit visit) const;
   void split(std::uint32_t first, std::uint32_t count, std::uint32_t children,
              std::uint32_t facets_per_child);
   Summary fill_block(std::uint32_t index, std::uint32_t first, std::uint32_t count);
-  Summary fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
-                    const Vec3& origin, double& reach) const;
-  Vec3 scaled(const Vec3& p) const { return (p - layout_.centre) / layout_.unit; }
+  void fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
+                 const Vec3& origin) const;
+  Vec3 scaled(const Vec3& p) const { return (p - layout_.centre) * scale_; }
 
-  const SizedFacets& facets_;
+  SizedFacets& facets_;
   int threads_;
+  double scale_ = 1.0;
   TreeLayout& layout_;
   std::vector<Item> items_;
   std::vector<Range> tasks_;
@@ -165,6 +159,7 @@ void TreeBuilder::find_frame() {
   if (!(layout_.unit > 0.0)) {
     layout_.unit = 1.0;  // one point of no size
   }
+  scale_ = 1.0 / layout_.unit;
   items_.resize(count);
   block_summaries_.resize(blocks_for(static_cast<std::uint32_t>(count)));
   parallel_for(chunks, threads_, [&](std::size_t c) {
@@ -219,23 +214,53 @@ void TreeBuilder::split(std::uint32_t first, std::uint32_t count, std::uint32_t 
   split(first + middle, count - middle, children - half, facets_per_child);
 }
 
+void TreeBuilder::split_children(const Range& range) {
+  const std::uint32_t capacity = blocks_per_child(range.blocks());
+  split(range.first, range.count, (range.blocks() + capacity - 1) / capacity, capacity * lanes);
+}
+
 void TreeBuilder::split_top(const Range& range) {
   if (range.blocks() <= blocks_per_task) {
     tasks_.push_back(range);
     return;
   }
   top_.push_back(range);
-  const std::uint32_t capacity = blocks_per_child(range.blocks());
-  split(range.first, range.count, (range.blocks() + capacity - 1) / capacity, capacity * lanes);
+  split_children(range);
   for_each_child(range, [&](std::uint32_t, const Range& child) { split_top(child); });
 }
 
-void TreeBuilder::build_subtree(const Range& range) {
-  const std::uint32_t capacity = blocks_per_child(range.blocks());
-  split(range.first, range.count, (range.blocks() + capacity - 1) / capacity, capacity * lanes);
+void TreeBuilder::split_subtree(const Range& range) {
+  split_children(range);
   for_each_child(range, [&](std::uint32_t, const Range& child) {
     if (child.blocks() > 1) {
-      build_subtree(child);
+      split_subtree(child);
+    }
+  });
+}
+
+void TreeBuilder::bring_into_order() {
+  SizedFacets ordered(facets_.size());
+  layout_.order.resize(facets_.size());
+  parallel_for(tasks_.size(), threads_, [&](std::size_t t) {
+    constexpr std::uint32_t ahead = 12;  // memory is slow to answer
+    const std::uint32_t end = tasks_[t].first + tasks_[t].count;
+    for (std::uint32_t i = tasks_[t].first; i < end; ++i) {
+      const char* later =
+          reinterpret_cast<const char*>(&facets_[items_[std::min(i + ahead, end - 1)].facet]);
+      __builtin_prefetch(later);
+      __builtin_prefetch(later + 64);
+      layout_.order[i] = items_[i].facet;
+      ordered[i] = facets_[items_[i].facet];
+    }
+  });
+  facets_ = std::move(ordered);
+  std::vector<Item>().swap(items_);
+}
+
+void TreeBuilder::finish_subtree(const Range& range) {
+  for_each_child(range, [&](std::uint32_t, const Range& child) {
+    if (child.blocks() > 1) {
+      finish_subtree(child);
     } else {
       const std::uint32_t block = child.first / lanes;
       block_summaries_[block] = fill_block(block, child.first, child.count);
@@ -258,8 +283,8 @@ void TreeBuilder::finish_node(const Range& range) {
         is_block ? block_summaries_[child.first / lanes] : node_summaries_[child.node];
     const OrientedBox& oriented = below[children++] = summary.oriented;
     for (int axis = 0; axis < 3; ++axis) {
-      boxes.lower[axis][lane] = summary.lower[axis];
-      boxes.upper[axis][lane] = summary.upper[axis];
+      boxes.lower[axis][lane] = rounded_down(summary.box.min()[axis] - box_margin);
+      boxes.upper[axis][lane] = rounded_up(summary.box.max()[axis] + box_margin);
       node.centre[axis][lane] = static_cast<float>(oriented.centre[axis]);
       node.first_axis[axis][lane] = static_cast<float>(oriented.axes(axis, 0));
       node.second_axis[axis][lane] = static_cast<float>(oriented.axes(axis, 1));
@@ -271,7 +296,7 @@ void TreeBuilder::finish_node(const Range& range) {
     node.child[lane] = is_block ? child.first / lanes | WideNode::is_block : child.node;
     all.add(summary);
   });
-  all.oriented = oriented_box(below.data(), children, all.spread, all.box());
+  all.oriented = oriented_box(below.data(), children, all.spread, all.box);
   layout_.slopes[range.node] = all.slope;
   node_summaries_[range.node] = all;
 }
@@ -282,47 +307,44 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   std::fill(block.start_size, block.start_size + lanes, infinity);
   block.first = first;
   block.count = count;
-  const Vec3 origin = facets_[items_[first].facet].facet.corners[0];
+  const Vec3 origin = facets_[first].facet.corners[0];
   const Vec3 scaled_origin = scaled(origin);
   std::copy(scaled_origin.data(), scaled_origin.data() + 3, block.origin);
-  double reach = 0.0;
   Summary summary;
+  double reach = 0.0;
+  double start_size = infinity;
+  double slope = infinity;
   std::array<Vec3, 3 * lanes> corners;
   std::size_t corner_count = 0;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const SizedFacet& facet = facets_[items_[first + lane].facet];
-    summary.add(fill_lane(block, lane, facet, origin, reach));
+    const SizedFacet& facet = facets_[first + lane];
+    fill_lane(block, lane, facet, origin);
+    start_size = std::min(start_size, facet.start_size);
+    slope = std::min(slope, facet.slope);
     for (int k = 0; k < facet.facet.corner_count; ++k) {
-      corners[corner_count++] = scaled(facet.facet.corners[k]);
+      const Vec3 corner = scaled(facet.facet.corners[k]);
+      reach = std::max(reach, (corner - scaled_origin).squaredNorm());
+      summary.box.extend(corner);
+      summary.spread.add(corner);
+      corners[corner_count++] = corner;
     }
   }
-  for (std::size_t i = 0; i < corner_count; ++i) {
-    summary.spread.add(corners[i]);
-  }
-  summary.oriented = oriented_box(corners.data(), corner_count, summary.spread, summary.box());
+  summary.start_size = rounded_down(start_size / layout_.unit);
+  summary.slope = rounded_down(slope);
+  summary.oriented = oriented_box(corners.data(), corner_count, summary.spread, summary.box);
   // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times.
-  block.place_error = static_cast<float>(1e-6 * reach + 1e-17);
+  block.place_error = static_cast<float>(1e-6 * std::sqrt(reach) + 1e-17);
   return summary;
 }
 
-Summary TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& sized,
-                               const Vec3& origin, double& reach) const {
+void TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& sized,
+                            const Vec3& origin) const {
   const Facet& facet = sized.facet;
-  const int corners = facet.corner_count;
   std::array<Vec3, 3> c;
-  Summary summary;
   for (int k = 0; k < 3; ++k) {
     // Corners that the facet does not have repeat its last one.
-    c[k] = (facet.corners[std::min(k, corners - 1)] - origin) / layout_.unit;
-    reach = std::max(reach, c[k].norm());
-    const Vec3 place = scaled(facet.corners[std::min(k, corners - 1)]);
-    for (int axis = 0; axis < 3; ++axis) {
-      summary.lower[axis] = std::min(summary.lower[axis], rounded_down(place[axis] - box_margin));
-      summary.upper[axis] = std::max(summary.upper[axis], rounded_up(place[axis] + box_margin));
-    }
+    c[k] = (facet.corners[std::min(k, facet.corner_count - 1)] - origin) / layout_.unit;
   }
-  summary.start_size = rounded_down(sized.start_size / layout_.unit);
-  summary.slope = rounded_down(sized.slope);
 
   // The longest side first.
   const double sides[3] = {(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(),
@@ -357,12 +379,11 @@ Summary TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const Size
   block.height[lane] = height > 1e-12 * length ? static_cast<float>(height) : 0.0f;
   block.start_size[lane] = static_cast<float>(sized.start_size / layout_.unit);
   block.slope[lane] = static_cast<float>(sized.slope);
-  return summary;
 }
 
 }  // namespace
 
-TreeLayout layout_tree(const SizedFacets& facets, int threads) {
+TreeLayout layout_tree(SizedFacets& facets, int threads) {
   TreeLayout layout;
   TreeBuilder(facets, threads, layout).build();
   return layout;

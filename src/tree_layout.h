@@ -29,8 +29,9 @@ struct TreeLayout {
   std::vector<simd::FacetBlock> blocks;
 };
 
-/// The same for any number of threads (0: as many as `parallel_for` takes).
-TreeLayout layout_tree(const SizedFacets& facets, int threads);
+/// Brings the facets into order as well. The same for any number of threads (0: as many as
+/// `parallel_for` takes).
+TreeLayout layout_tree(SizedFacets& facets, int threads);
 
 }  // namespace meshgrow
 

@@ -207,6 +207,8 @@ constexpr int entries_at_once = 32;
 template <typename Search>
 struct Descent {
   Search search;
+  static constexpr std::uint32_t none = 0xFFFFFFFFu;
+  std::uint32_t chosen = none;
   int top = -1;  ///< level; -1: take the next start
   int next = 0;
   int starts_count = 0;
@@ -215,6 +217,7 @@ struct Descent {
 
   /// The first start is the one with the least bound of a child.
   void begin(const NodeEntry* entries, int count) {
+    chosen = none;
     top = -1;
     next = 0;
     starts_count = 0;
@@ -243,30 +246,55 @@ struct Descent {
     }
   }
 
-  /// Visits the most promising child that is left. False at the end.
+  /// Visits the child chosen before and chooses the most promising one that is left, whose memory
+  /// is asked for until the next step. False at the end.
   bool step() {
-    if (top < 0) {
-      if (next == starts_count) {
-        return false;
+    if (chosen != none) {
+      const std::uint32_t child = chosen;
+      chosen = none;
+      if ((child & WideNode::is_block) != 0) {
+        if (!search.ask(child & ~WideNode::is_block)) {
+          return false;
+        }
+      } else {
+        levels[++top] = search.enter(child);
       }
-      levels[top = 0] = starts[next++];
     }
-    Level& level = levels[top];
-    const unsigned mask = level.mask & bits(level.bounds <= all(search.limit()));
-    if (mask == 0) {
-      --top;
+    for (;;) {
+      if (top < 0) {
+        if (next == starts_count) {
+          return false;
+        }
+        levels[top = 0] = starts[next++];
+      }
+      Level& level = levels[top];
+      const unsigned mask = level.mask & bits(level.bounds <= all(search.limit()));
+      if (mask == 0) {
+        --top;
+        continue;
+      }
+      const int lane = least_lane(level.bounds, mask);
+      level.mask = mask & ~(1u << lane);
+      chosen = level.node->child[lane];
+      search.prefetch(chosen);
       return true;
     }
-    const int lane = least_lane(level.bounds, mask);
-    level.mask = mask & ~(1u << lane);
-    const std::uint32_t child = level.node->child[lane];
-    if ((child & WideNode::is_block) != 0) {
-      return search.ask(child & ~WideNode::is_block);
-    }
-    levels[++top] = search.enter(child);
-    return true;
   }
 };
+
+inline void prefetch_lines(const void* begin, int bytes) {
+  for (int i = 0; i < bytes; i += 64) {
+    __builtin_prefetch(static_cast<const char*>(begin) + i);
+  }
+}
+
+inline void prefetch_child(const WideTree& tree, std::uint32_t child) {
+  if ((child & WideNode::is_block) != 0) {
+    prefetch_lines(tree.blocks + (child & ~WideNode::is_block), sizeof(FacetBlock));
+  } else {
+    prefetch_lines(tree.nodes + child, sizeof(WideNode));
+  }
+}
 
 // ==== Least size
 
@@ -328,10 +356,11 @@ struct LeastSizeSearch {
     return true;
   }
   float limit() const { return query->limit; }
+  void prefetch(std::uint32_t child) const { prefetch_child(*tree, child); }
 };
 
 /// Searches that go on by turns: while one waits for its numbers, the others have theirs.
-constexpr int searches_at_once = 4;
+constexpr int searches_at_once = 8;
 
 void least_sizes(const WideTree& tree, const NodeEntry* entries, int count, LeastSize* queries,
                  int query_count) {
@@ -432,6 +461,7 @@ struct LeastRatioSearch {
     return query->ratio >= query->enough;
   }
   float limit() const { return query->ratio; }
+  void prefetch(std::uint32_t) const {}
 };
 
 void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
