@@ -128,7 +128,8 @@ BackgroundGrid::NodeCode BackgroundGrid::child(const Spot& spot) const {
 
 double BackgroundGrid::leaf_size(const Spot& spot, const Vec3& p) const {
   if (kind(spot.node) == NodeKind::exact) {
-    return exact_leaf_size(index(spot.node), p);
+    const std::uint32_t leaf = index(spot.node);
+    return tree_->smallest(p, exact_entries(leaf), exact_guess(leaf, p)).size;
   }
   if (kind(spot.node) == NodeKind::tree) {
     return tree_->size(p, size_limit_);
@@ -157,6 +158,9 @@ void BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes)
   constexpr std::size_t group = 16;
   std::array<Spot, group> spots;
   std::array<std::size_t, group> open;
+  std::array<std::size_t, group> exact_spots;
+  std::array<Vec3, group> exact_points;
+  std::array<FacetTree::Smallest, group> found;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t in_group = std::min(group, count - first);
     std::size_t open_count = 0;
@@ -187,27 +191,45 @@ void BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes)
       }
       open_count = still_open;
     }
+    std::size_t exact_count = 0;
     for (std::size_t i = 0; i < in_group; ++i) {
-      if (inside >> i & 1) {
-        sizes[first + i] = leaf_size(spots[i], points[first + i]);
+      if ((inside >> i & 1) == 0) {
+        continue;
       }
+      if (kind(spots[i].node) != NodeKind::exact) {
+        sizes[first + i] = leaf_size(spots[i], points[first + i]);
+        continue;
+      }
+      exact_spots[exact_count] = i;
+      exact_points[exact_count] = points[first + i];
+      found[exact_count] = exact_guess(index(spots[i].node), points[first + i]);
+      ++exact_count;
+    }
+    tree_->smallest(
+        exact_points.data(), exact_count,
+        [&](std::size_t k) { return exact_entries(index(spots[exact_spots[k]].node)); },
+        found.data());
+    for (std::size_t k = 0; k < exact_count; ++k) {
+      sizes[first + exact_spots[k]] = found[k].size;
     }
   }
 }
 
-double BackgroundGrid::exact_leaf_size(std::uint32_t leaf, const Vec3& p) const {
-  const std::uint32_t begin = nodes_.exact_begin[leaf];
+FacetTree::Entries BackgroundGrid::exact_entries(std::uint32_t leaf) const {
+  const std::uint32_t begin = nodes_.exact_begin[leaf] + 1;
   const std::uint32_t end = nodes_.exact_begin[leaf + 1];
-  FacetTree::Smallest known{size_limit_, FacetTree::Smallest::no_facet};
-  const std::uint32_t facet = nodes_.exact_data[begin];
+  return {nodes_.exact_data.data() + begin, static_cast<int>(end - begin)};
+}
+
+FacetTree::Smallest BackgroundGrid::exact_guess(std::uint32_t leaf, const Vec3& p) const {
+  const std::uint32_t facet = nodes_.exact_data[nodes_.exact_begin[leaf]];
   if (facet != FacetTree::Smallest::no_facet) {
     const double size = tree_->facets()[facet].size_at(p);
     if (size < size_limit_) {
-      known = {size, facet};
+      return {size, facet};
     }
   }
-  return tree_->smallest(p, &nodes_.exact_data[begin] + 1, static_cast<int>(end - begin - 1), known)
-      .size;
+  return {size_limit_, FacetTree::Smallest::no_facet};
 }
 
 }  // namespace meshgrow

@@ -96,7 +96,8 @@ class BackgroundGrid {
   bool find_in_table(const Vec3& p, Spot& spot) const;
   NodeCode child(const Spot& spot) const;
   double leaf_size(const Spot& spot, const Vec3& p) const;
-  double exact_leaf_size(std::uint32_t leaf, const Vec3& p) const;
+  FacetTree::Entries exact_entries(std::uint32_t leaf) const;
+  FacetTree::Smallest exact_guess(std::uint32_t leaf, const Vec3& p) const;
   void fill_table();
   void fill_table(NodeCode node, int depth, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 

@@ -68,7 +68,7 @@ CellClassifier::Verdict CellClassifier::classify(const GridCell& cell,
 }
 
 FacetTree::Smallest CellClassifier::smallest(const Vec3& p) const {
-  return tree_.smallest(p, &FacetTree::root, 1, {size_limit_, FacetTree::Smallest::no_facet});
+  return tree_.smallest(p, FacetTree::Entries(), {size_limit_, FacetTree::Smallest::no_facet});
 }
 
 /// A good guess to begin a search with: the facet that rules at the cell's centre.
@@ -230,8 +230,8 @@ void CellClassifier::find_lattice_sizes(const GridCell& cell, const int* points,
     return;
   }
   find_ruling_entries(cell);
-  tree_.smallest(places.data(), asked_count, split_.candidates.data(),
-                 static_cast<int>(split_.candidates.size()), found.data());
+  tree_.smallest(
+      places.data(), asked_count, [this](std::size_t) { return children_entries(); }, found.data());
   for (std::size_t k = 0; k < asked_count; ++k) {
     split_.lattice[asked[k]] = found[k].size;
     const LatticePlace place = lattice_place(cell, asked[k]);
@@ -262,8 +262,8 @@ const CellClassifier::Split& CellClassifier::split(const GridCell& cell) {
     centres[child] = child_cell(cell, child, split_.lattice).centre(cube_);
     split_.ruling[child] = known_at(centres[child]);
   }
-  tree_.smallest(centres.data(), 8, split_.candidates.data(),
-                 static_cast<int>(split_.candidates.size()), split_.ruling.data());
+  tree_.smallest(
+      centres.data(), 8, [this](std::size_t) { return children_entries(); }, split_.ruling.data());
   return split_;
 }
 

@@ -62,6 +62,9 @@ class CellClassifier {
 
  private:
   FacetTree::Smallest known_at(const Vec3& p) const;
+  FacetTree::Entries children_entries() const {
+    return {split_.candidates.data(), static_cast<int>(split_.candidates.size())};
+  }
   void find_ruling_corners();
   /// What the facet that rules at the centre gives: an upper bound of the field.
   double ruling_size(const LatticePlace& place) const;

@@ -60,78 +60,62 @@ double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inv
 
 // ==== Sizes
 
-/// One search: takes candidates from the kernel and decides in double.
-struct FacetTree::Search {
-  const FacetTree* tree;
-  const Vec3* p;
-  Smallest* best;
-  simd::LeastSize* query;
-
-  void begin() {
-    const Vec3 place = (*p - tree->layout_.centre) / tree->layout_.unit;
-    for (int axis = 0; axis < 3; ++axis) {
-      query->place[axis] = place[axis];
-    }
-    query->limit = limit();
-    query->count = 0;
-    query->context = this;
-    query->overflow = [](simd::LeastSize& full) { static_cast<Search*>(full.context)->decide(); };
+void FacetTree::Search::begin(const Entries& entries) {
+  const Vec3 place = (*p - tree->layout_.centre) / tree->layout_.unit;
+  for (int axis = 0; axis < 3; ++axis) {
+    query->place[axis] = place[axis];
   }
-
-  float limit() const {
-    const double scaled = best->size / tree->layout_.unit * (1.0 + relative_rounding);
-    return scaled < FLT_MAX ? static_cast<float>(scaled) : FLT_MAX;
-  }
-
-  void decide() {
-    for (int i = 0; i < query->count; ++i) {
-      if (query->lower_bounds[i] <= query->limit) {
-        const std::uint32_t facet = query->facets[i];
-        const double size = tree->facets_[facet].size_at(*p);
-        if (size < best->size || (size == best->size && facet < best->facet)) {
-          *best = {size, facet};
-        }
-      }
-    }
-    query->count = 0;
-    query->limit = std::min(query->limit, limit());
-  }
-};
-
-FacetTree::Smallest FacetTree::smallest(const Vec3& p, const simd::NodeEntry* entries, int count,
-                                        const Smallest& known) const {
-  Smallest best = known;
-  smallest(&p, 1, entries, count, &best);
-  return best;
+  query->entries = entries.begin;
+  query->entry_count = entries.count;
+  query->limit = limit();
+  query->count = 0;
+  query->context = this;
+  query->overflow = [](simd::LeastSize& full) { static_cast<Search*>(full.context)->decide(); };
 }
 
-void FacetTree::smallest(const Vec3* points, std::size_t point_count,
-                         const simd::NodeEntry* entries, int count, Smallest* known) const {
-  if (empty()) {
-    return;
+float FacetTree::Search::limit() const {
+  const double scaled = best->size / tree->layout_.unit * (1.0 + relative_rounding);
+  return scaled < FLT_MAX ? static_cast<float>(scaled) : FLT_MAX;
+}
+
+/// The kernel only ruled facets out: among the candidates, double decides.
+void FacetTree::Search::decide() {
+  for (int i = 0; i < query->count; ++i) {
+    if (query->lower_bounds[i] <= query->limit) {
+      const std::uint32_t facet = query->facets[i];
+      const double size = tree->facets_[facet].size_at(*p);
+      if (size < best->size || (size == best->size && facet < best->facet)) {
+        *best = {size, facet};
+      }
+    }
   }
+  query->count = 0;
+  query->limit = std::min(query->limit, limit());
+}
+
+void FacetTree::run(simd::LeastSize* queries, std::size_t count) const {
   static const simd::TreeKernels& kernels = simd::tree_kernels();
-  constexpr std::size_t group = 8;
-  std::array<simd::LeastSize, group> queries;
-  std::array<Search, group> searches;
-  for (std::size_t first = 0; first < point_count; first += group) {
-    const std::size_t in_group = std::min(group, point_count - first);
-    for (std::size_t i = 0; i < in_group; ++i) {
-      searches[i] = {this, points + first + i, known + first + i, &queries[i]};
-      searches[i].begin();
-    }
-    kernels.least_sizes(view(), entries, count, queries.data(), static_cast<int>(in_group));
-    for (std::size_t i = 0; i < in_group; ++i) {
-      searches[i].decide();
-    }
+  kernels.least_sizes(view(), queries, static_cast<int>(count));
+}
+
+FacetTree::Smallest FacetTree::smallest(const Vec3& p, const Entries& entries,
+                                        const Smallest& known) const {
+  Smallest best = known;
+  if (!empty()) {
+    simd::LeastSize query;
+    Search search{this, &p, &best, &query};
+    search.begin(entries);
+    run(&query, 1);
+    search.decide();
   }
+  return best;
 }
 
 double FacetTree::size(const Vec3& p, double upper_bound) const {
   if (!is_near_enough_for_float(p)) {
     return reference_size(p, upper_bound);
   }
-  return smallest(p, &root, 1, {upper_bound, Smallest::no_facet}).size;
+  return smallest(p, Entries(), {upper_bound, Smallest::no_facet}).size;
 }
 
 void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
@@ -144,7 +128,8 @@ void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
     found.fill({upper_bound, Smallest::no_facet});
     if (std::all_of(begin, begin + in_group,
                     [this](const Vec3& p) { return is_near_enough_for_float(p); })) {
-      smallest(begin, in_group, &root, 1, found.data());
+      smallest(
+          begin, in_group, [](std::size_t) { return Entries(); }, found.data());
     } else {
       for (std::size_t i = 0; i < in_group; ++i) {
         found[i].size = size(begin[i], upper_bound);

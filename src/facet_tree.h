@@ -1,6 +1,7 @@
 #ifndef MESHGROW_FACET_TREE_H
 #define MESHGROW_FACET_TREE_H
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -34,6 +35,15 @@ class FacetTree {
   /// The same for many points, in less time each.
   void sizes(const Vec3* points, std::size_t count, double upper_bound, double* sizes) const;
 
+  /// Every facet is below it.
+  static constexpr simd::NodeEntry root = simd::all_children;
+
+  /// The parts of the tree in which to look.
+  struct Entries {
+    const simd::NodeEntry* begin = &root;
+    int count = 1;
+  };
+
   struct Smallest {
     static constexpr std::uint32_t no_facet = 0xFFFFFFFFu;
     double size = infinity;          ///< model units
@@ -42,15 +52,12 @@ class FacetTree {
 
   /// The smallest among the facets below `entries`, if it is below that of `known`: this is where
   /// the search begins, and what is answered otherwise.
-  Smallest smallest(const Vec3& p, const simd::NodeEntry* entries, int count,
-                    const Smallest& known) const;
+  Smallest smallest(const Vec3& p, const Entries& entries, const Smallest& known) const;
 
-  /// The same for several points, in less time each. `known` on entry, the answers on return.
-  void smallest(const Vec3* points, std::size_t point_count, const simd::NodeEntry* entries,
-                int count, Smallest* known) const;
-
-  /// Every facet is below it.
-  static constexpr simd::NodeEntry root = simd::all_children;
+  /// The same for several points, in less time each. `known` on entry, the answers on return;
+  /// entries(i) are those for point i.
+  template <typename EntriesOf>
+  void smallest(const Vec3* points, std::size_t count, EntriesOf entries, Smallest* known) const;
 
   struct Closest {
     std::size_t facet = 0;       ///< index into facets()
@@ -120,7 +127,21 @@ class FacetTree {
   bool has_entries() const { return layout_.nodes.size() <= simd::max_nodes; }
 
  private:
-  struct Search;
+  struct Search {
+    const FacetTree* tree;
+    const Vec3* p;
+    Smallest* best;
+    simd::LeastSize* query;
+
+    void begin(const Entries& entries);
+    float limit() const;
+    void decide();
+  };
+
+  /// Searches begun together.
+  static constexpr std::size_t searches_at_once = 8;
+
+  void run(simd::LeastSize* queries, std::size_t count) const;
 
   /// Entries of a stack that holds up to seven siblings a level, of eleven levels.
   static constexpr std::size_t stack_size = 96;
@@ -136,6 +157,27 @@ class FacetTree {
   TreeLayout layout_;
   double largest_slope_ = 0.0;
 };
+
+template <typename EntriesOf>
+void FacetTree::smallest(const Vec3* points, std::size_t count, EntriesOf entries,
+                         Smallest* known) const {
+  if (empty()) {
+    return;
+  }
+  std::array<simd::LeastSize, searches_at_once> queries;
+  std::array<Search, searches_at_once> searches;
+  for (std::size_t first = 0; first < count; first += searches_at_once) {
+    const std::size_t in_group = std::min(searches_at_once, count - first);
+    for (std::size_t i = 0; i < in_group; ++i) {
+      searches[i] = {this, points + first + i, known + first + i, &queries[i]};
+      searches[i].begin(entries(first + i));
+    }
+    run(queries.data(), in_group);
+    for (std::size_t i = 0; i < in_group; ++i) {
+      searches[i].decide();
+    }
+  }
+}
 
 template <typename Value, typename OfFacet, typename Merge>
 std::vector<Value> FacetTree::node_values(OfFacet of_facet, Merge merge) const {

@@ -13,6 +13,8 @@ struct LeastSize {
   static constexpr int capacity = 32;
 
   double place[3];
+  const NodeEntry* entries;  ///< where to look
+  int entry_count;
   float limit;  ///< in: nothing above it is wanted; out: nothing above it can be the least
   int count = 0;
   std::uint32_t facets[capacity];
@@ -54,8 +56,7 @@ struct Survivors {
 struct TreeKernels {
   const char* name;
   /// Several places at once take less time each.
-  void (*least_sizes)(const WideTree&, const NodeEntry* entries, int count, LeastSize* queries,
-                      int query_count);
+  void (*least_sizes)(const WideTree&, LeastSize* queries, int count);
   void (*least_ratio)(const WideTree&, const NodeEntry* entries, int count, LeastRatio&);
   /// Upper bounds of the sizes that a facet of the block gives at the corners of the cell.
   void (*corner_sizes)(const FacetBlock&, int lane, const CellCorners&, float* sizes);

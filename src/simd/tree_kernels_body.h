@@ -210,15 +210,24 @@ struct Descent {
   static constexpr std::uint32_t none = 0xFFFFFFFFu;
   std::uint32_t chosen = none;
   int top = -1;  ///< level; -1: take the next start
+  const NodeEntry* entries = nullptr;
+  int entries_left = 0;
   int next = 0;
   int starts_count = 0;
   Level levels[max_levels];
   Level starts[entries_at_once];
 
-  /// The first start is the one with the least bound of a child.
-  void begin(const NodeEntry* entries, int count) {
+  void begin(const NodeEntry* from, int count) {
     chosen = none;
     top = -1;
+    entries = from;
+    entries_left = count;
+    refill();
+  }
+
+  /// Takes the next entries. The first start is then the one with the least bound of a child.
+  void refill() {
+    const int count = entries_left < entries_at_once ? entries_left : entries_at_once;
     next = 0;
     starts_count = 0;
     int best = 0;
@@ -244,6 +253,8 @@ struct Descent {
       starts[0] = starts[best];
       starts[best] = first;
     }
+    entries += count;
+    entries_left -= count;
   }
 
   /// Visits the child chosen before and chooses the most promising one that is left, whose memory
@@ -262,8 +273,11 @@ struct Descent {
     }
     for (;;) {
       if (top < 0) {
-        if (next == starts_count) {
-          return false;
+        while (next == starts_count) {
+          if (entries_left == 0) {
+            return false;
+          }
+          refill();
         }
         levels[top = 0] = starts[next++];
       }
@@ -362,26 +376,21 @@ struct LeastSizeSearch {
 /// Searches that go on by turns: while one waits for its numbers, the others have theirs.
 constexpr int searches_at_once = 8;
 
-void least_sizes(const WideTree& tree, const NodeEntry* entries, int count, LeastSize* queries,
-                 int query_count) {
+void least_sizes(const WideTree& tree, LeastSize* queries, int count) {
   Descent<LeastSizeSearch> descents[searches_at_once];
-  for (int first_query = 0; first_query < query_count; first_query += searches_at_once) {
-    const int together =
-        query_count - first_query < searches_at_once ? query_count - first_query : searches_at_once;
-    for (int first = 0; first < count; first += entries_at_once) {
-      const int in_group = count - first < entries_at_once ? count - first : entries_at_once;
-      Descent<LeastSizeSearch>* open[searches_at_once];
-      for (int i = 0; i < together; ++i) {
-        LeastSize& query = queries[first_query + i];
-        open[i] = &descents[i];
-        descents[i].search = {&tree, &query, float_place(query.place)};
-        descents[i].begin(entries + first, in_group);
-      }
-      for (int left = together; left > 0;) {
-        for (int i = 0; i < left; ++i) {
-          if (!open[i]->step()) {
-            open[i--] = open[--left];
-          }
+  Descent<LeastSizeSearch>* open[searches_at_once];
+  for (int first = 0; first < count; first += searches_at_once) {
+    int left = count - first < searches_at_once ? count - first : searches_at_once;
+    for (int i = 0; i < left; ++i) {
+      LeastSize& query = queries[first + i];
+      open[i] = &descents[i];
+      descents[i].search = {&tree, &query, float_place(query.place)};
+      descents[i].begin(query.entries, query.entry_count);
+    }
+    while (left > 0) {
+      for (int i = 0; i < left; ++i) {
+        if (!open[i]->step()) {
+          open[i--] = open[--left];
         }
       }
     }
@@ -467,11 +476,8 @@ struct LeastRatioSearch {
 void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
   Descent<LeastRatioSearch> descent;
   descent.search = {&tree, &query, float_place(query.cell.centre)};
-  for (int first = 0; first < count && query.ratio >= query.enough; first += entries_at_once) {
-    descent.begin(entries + first,
-                  count - first < entries_at_once ? count - first : entries_at_once);
-    while (descent.step()) {
-    }
+  descent.begin(entries, count);
+  while (descent.step()) {
   }
 }
 
