@@ -92,8 +92,11 @@ def mesh_with_field(field, said):
     """Meshes what is not discrete; returns how long it took, the field and the rest."""
     begin = time.perf_counter()
     field.generate(3)
-    ready = max(when for when, line in said if line.startswith("Background grid"))
-    return ready - begin, time.perf_counter() - ready
+    end = time.perf_counter()
+    read = min(when for when, line in said if line.startswith("Meshing"))
+    grids = sum(group["grid"]["seconds"] for group in field.statistics()["groups"] if group["grid"])
+    preparing = read - begin + grids
+    return preparing, end - begin - preparing
 
 
 def mesh_with_callback(field):

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -82,9 +83,10 @@ SizeFunction common(Kind kind, std::vector<Entity> sources, std::vector<Entity> 
   return function;
 }
 
-using SizeOf = double (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec3&) const;
+using SizesOf = void (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec3*, std::size_t,
+                                              double*) const;
 
-int sizes_at(meshgrow_field* field, SizeOf size_of, int dim, int tag, const double* points,
+int sizes_at(meshgrow_field* field, SizesOf sizes_of, int dim, int tag, const double* points,
              size_t points_n, double* sizes) {
   return guarded(1, [&] {
     deref(field).refresh_if_needed();
@@ -93,9 +95,14 @@ int sizes_at(meshgrow_field* field, SizeOf size_of, int dim, int tag, const doub
       throw Error(meshgrow::entity_name({dim, tag}) +
                   " is not in the model: check its dimension and tag.");
     }
-    for (size_t i = 0; i < points_n; ++i) {
-      sizes[i] = (size_field.*size_of)(
-          {dim, tag}, meshgrow::Vec3(points[3 * i], points[3 * i + 1], points[3 * i + 2]));
+    std::array<meshgrow::Vec3, 256> chunk;
+    for (size_t first = 0; first < points_n; first += chunk.size()) {
+      const size_t count = std::min(chunk.size(), points_n - first);
+      for (size_t i = 0; i < count; ++i) {
+        const double* p = points + 3 * (first + i);
+        chunk[i] = meshgrow::Vec3(p[0], p[1], p[2]);
+      }
+      (size_field.*sizes_of)({dim, tag}, chunk.data(), count, sizes + first);
     }
     return 0;
   });
@@ -169,6 +176,9 @@ json summary_json(const meshgrow::SizeField& field) {
                   {"functions", group.functions},
                   {"facets", group.facets},
                   {"tree_bytes", group.tree_bytes},
+                  {"tree_seconds", group.tree_seconds},
+                  {"answers", group.answers},
+                  {"exact_answers", group.exact_answers},
                   {"grid", nullptr}};
     if (group.has_grid) {
       entry["grid"] = {{"interpolated_cells", group.grid.interpolated_leaves},
@@ -192,15 +202,18 @@ void set_option(meshgrow::ModelField& model_field, const std::string& name, doub
       throw Error("The number of threads must be from 0 (all) to 1024.");
     }
     options.threads = static_cast<int>(value);
-  } else if (name == "exact") {
-    options.evaluator = value != 0.0 ? meshgrow::Evaluator::exact : meshgrow::Evaluator::grid;
+  } else if (name == "evaluator") {
+    if (value != 0.0 && value != 1.0 && value != 2.0) {
+      throw Error("The evaluator must be 0 (auto), 1 (grid) or 2 (exact).");
+    }
+    options.evaluator = static_cast<meshgrow::Evaluator>(static_cast<int>(value));
   } else if (name == "strict") {
     model_field.set_strict(value != 0.0);
   } else if (name == "calibrate") {
     model_field.set_calibrate(value != 0.0);
   } else {
     throw Error("There is no option \"" + name +
-                "\": give \"tolerance\", \"threads\", \"exact\", \"strict\" or \"calibrate\".");
+                "\": give \"tolerance\", \"threads\", \"evaluator\", \"strict\" or \"calibrate\".");
   }
 }
 
@@ -379,12 +392,12 @@ int meshgrow_field_combine(meshgrow_field* field,
 
 int meshgrow_field_size(meshgrow_field* field, int dim, int tag, const double* points,
                         size_t points_n, double* sizes) {
-  return sizes_at(field, &meshgrow::SizeField::size, dim, tag, points, points_n, sizes);
+  return sizes_at(field, &meshgrow::SizeField::sizes, dim, tag, points, points_n, sizes);
 }
 
 int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag, const double* points,
                               size_t points_n, double* sizes) {
-  return sizes_at(field, &meshgrow::SizeField::exact_size, dim, tag, points, points_n, sizes);
+  return sizes_at(field, &meshgrow::SizeField::exact_sizes, dim, tag, points, points_n, sizes);
 }
 
 double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x, double y,

@@ -88,7 +88,7 @@ MESHGROW_API int meshgrow_field_create_defaults(meshgrow_field* field, const int
 MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
 
 /* Options, before the field is used: "tolerance" (relative, of the background grid; 0.05),
- * "threads" (that build grids; 0: all), "exact" (1: sizes by the tree, no grid; 0), "strict" (1: a
+ * "threads" (that build grids; 0: all), "evaluator" (0: auto, 1: grid, 2: exact), "strict" (1: a
  * mesh size function whose source has no mesh is an error; 0: a warning), "calibrate" (1: the sizes
  * that Gmsh is told are corrected by measured factors, so that its edges get the length asked for;
  * 0). */

@@ -242,7 +242,7 @@ void ModelField::read_all(bool wait_for_meshes) {
       report_unmeshed(function);
     }
   }
-  field_.build();
+  field_.build({}, wait_for_meshes ? sizes_per_tetrahedron() : 0.0);
   sources_read_ = true;
 }
 
@@ -255,6 +255,20 @@ void ModelField::read_if_needed() {
 void ModelField::refresh_if_needed() {
   read_if_needed();
   field_.build();
+}
+
+double ModelField::sizes_per_tetrahedron() {
+  // Measured on both generations (DESIGN.md, section 5).
+  switch (static_cast<int>(gmsh::option("Mesh.Algorithm3D"))) {
+    case 1:  // Delaunay
+      return 0.2;
+    case 4:  // Frontal
+      return 0.0;
+    case 10:  // HXT
+      return 2.0;
+    default:
+      return 0.5;
+  }
 }
 
 void ModelField::register_callback() {

@@ -73,6 +73,9 @@ class ModelField {
   /// The same, but leaves trees and grids that are out of date as they are if sources were read.
   void read_if_needed();
 
+  /// How many sizes Gmsh asks for, a tetrahedron, with the algorithm that is set.
+  static double sizes_per_tetrahedron();
+
   /// Registers the field as Gmsh's size callback, sources read as they are now. A source that gets
   /// its mesh in a lower dimension of a later run of Gmsh is read when sizes of a higher one are
   /// first asked for; those sizes are exact ones until `refresh` builds grids. Throws Error if

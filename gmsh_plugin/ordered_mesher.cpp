@@ -222,7 +222,7 @@ void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
       continue;
     }
     if (is_attached) {
-      field_.build(entities);
+      field_.build(entities, pass.dim == 3 ? ModelField::sizes_per_tetrahedron() : 0.0);
     }
     const std::string name = "pass " + std::to_string(pass_count_) + " of " +
                              std::to_string(planned_count_) + " (" + entity_names(entities, 3) +

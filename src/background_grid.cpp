@@ -143,7 +143,13 @@ double BackgroundGrid::leaf_size(const Spot& spot, const Vec3& p) const {
 }
 
 double BackgroundGrid::size(const Vec3& p) const {
+  bool interpolated = false;
+  return size(p, interpolated);
+}
+
+double BackgroundGrid::size(const Vec3& p, bool& interpolated) const {
   Spot spot;
+  interpolated = false;
   if (!find_in_table(p, spot)) {
     return tree_->size(p, size_limit_);
   }
@@ -151,11 +157,13 @@ double BackgroundGrid::size(const Vec3& p) const {
     spot.node = child(spot);
     ++spot.depth;
   }
+  interpolated = kind(spot.node) == NodeKind::interpolated;
   return leaf_size(spot, p);
 }
 
-void BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes) const {
+std::size_t BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes) const {
   constexpr std::size_t group = 16;
+  std::size_t interpolated = 0;
   std::array<Spot, group> spots;
   std::array<std::size_t, group> open;
   std::array<std::size_t, group> exact_spots;
@@ -197,6 +205,7 @@ void BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes)
         continue;
       }
       if (kind(spots[i].node) != NodeKind::exact) {
+        interpolated += kind(spots[i].node) == NodeKind::interpolated ? 1 : 0;
         sizes[first + i] = leaf_size(spots[i], points[first + i]);
         continue;
       }
@@ -213,6 +222,7 @@ void BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes)
       sizes[first + exact_spots[k]] = found[k].size;
     }
   }
+  return interpolated;
 }
 
 FacetTree::Entries BackgroundGrid::exact_entries(std::uint32_t leaf) const {

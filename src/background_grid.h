@@ -45,8 +45,12 @@ class BackgroundGrid {
   /// Size at the finite point p in model units: from the grid inside its cube, exact outside.
   double size(const Vec3& p) const;
 
+  /// The same; tells whether the answer was interpolated (true) or searched for in the tree.
+  double size(const Vec3& p, bool& interpolated) const;
+
   /// The same for many points, which wait for memory together and not one after the other.
-  void sizes(const Vec3* points, std::size_t count, double* sizes) const;
+  /// Returns how many were interpolated.
+  std::size_t sizes(const Vec3* points, std::size_t count, double* sizes) const;
 
   struct Statistics {
     std::size_t interpolated_leaves = 0;

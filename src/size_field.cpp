@@ -1,11 +1,14 @@
 #include "size_field.h"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <sstream>
 
+#include "expected_elements.h"
 #include "growth_law.h"
 #include "number_text.h"
+#include "parallel.h"
 #include "start_sizes/curvature_start_sizes.h"
 #include "start_sizes/fixed_start_sizes.h"
 #include "start_sizes/mesh_start_sizes.h"
@@ -129,7 +132,20 @@ void SizeField::set_facets(std::size_t function, SizedFacets facets) {
   }
 }
 
-void SizeField::build(const std::vector<Entity>& entities) {
+// ==== Trees and grids
+
+namespace {
+
+/// A grid takes about so many times longer to build, a facet, than it saves at a size: 2.5 µs on
+/// one thread against 0.5 µs (tests/run_benchmarks.sh). A little more, so that it never loses.
+constexpr double sizes_per_facet_worth_a_grid = 7.0;
+
+/// Below so many sizes nobody notices who answers.
+constexpr double fewest_sizes_worth_a_grid = 20000.0;
+
+}  // namespace
+
+void SizeField::build(const std::vector<Entity>& entities, double sizes_per_tetrahedron) {
   std::vector<bool> wanted(groups_.size(), entities.empty());
   for (const Entity& entity : entities) {
     const auto found = group_of_.find(entity);
@@ -138,66 +154,109 @@ void SizeField::build(const std::vector<Entity>& entities) {
     }
   }
   for (std::size_t i = 0; i < groups_.size(); ++i) {
-    if (wanted[i] && (groups_[i].changed || lacks_grid(groups_[i]))) {
-      build_group(i, options_.evaluator);
+    Group& group = groups_[i];
+    if (!wanted[i] ||
+        (!group.changed && (group.grid || !wants_grid(group, entities, sizes_per_tetrahedron)))) {
+      continue;
     }
+    // Built aside and moved in at the end: if building fails, the group answers as before.
+    Group built = group;
+    if (built.changed) {
+      build_tree(built);
+    }
+    if (!built.grid && wants_grid(built, entities, sizes_per_tetrahedron)) {
+      build_grid(i, built);
+    }
+    group = std::move(built);
   }
 }
 
 void SizeField::build_trees() {
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    if (groups_[i].changed) {
-      build_group(i, Evaluator::exact);
+  for (Group& group : groups_) {
+    if (group.changed) {
+      build_tree(group);
     }
   }
 }
 
-bool SizeField::lacks_grid(const Group& group) const {
-  return options_.evaluator == Evaluator::grid && !group.grid && group.tree && !group.tree->empty();
+Box SizeField::box_of(const Group& group) const {
+  Box box;
+  for (const Entity& entity : group.entities) {
+    box.extend(topology_.box(entity));
+  }
+  return box;
 }
 
-void SizeField::build_group(std::size_t index, Evaluator evaluator) {
-  // Built aside and moved in at the end: if building fails, the group answers as before.
-  Group built;
+bool SizeField::wants_grid(const Group& group, const std::vector<Entity>& entities,
+                           double sizes_per_tetrahedron) const {
+  if (options_.evaluator == Evaluator::exact || group.tree->empty()) {
+    return false;
+  }
+  if (options_.evaluator == Evaluator::grid) {
+    return true;
+  }
+  Box box;
+  for (const Entity& entity : entities.empty() ? group.entities : entities) {
+    if (entity.dim == 3 && this->group(entity) != nullptr) {
+      box.extend(topology_.box(entity));
+    }
+  }
+  const SizedFacets& facets = group.tree->facets();
+  const double sizes =
+      sizes_per_tetrahedron <= 0.0 || box.isEmpty()
+          ? 0.0
+          : sizes_per_tetrahedron * expected_tetrahedra(facets, group.size_limit, box);
+  const int threads = options_.threads > 0 ? options_.threads : default_threads();
+  return sizes * threads > sizes_per_facet_worth_a_grid * static_cast<double>(facets.size()) &&
+         sizes > fewest_sizes_worth_a_grid;
+}
+
+void SizeField::build_tree(Group& group) const {
+  const auto start = std::chrono::steady_clock::now();
+  double size_limit = no_size;
   SizedFacets facets;
-  for (const Action& action : groups_[index].actions) {
+  for (const Action& action : group.actions) {
     if (!is_effective(action.function)) {
       continue;
     }
     const SizeFunction& function = functions_[action.function];
-    built.size_limit = std::min(built.size_limit, function.size_limit);
+    size_limit = std::min(size_limit, function.size_limit);
     if (action.inside_source) {
-      built.size_limit = std::min(built.size_limit, function.start_size);
+      size_limit = std::min(size_limit, function.start_size);
     } else {
       const SizedFacets& more = facets_[action.function];
       facets.insert(facets.end(), more.begin(), more.end());
     }
   }
-  built.tree = std::make_shared<FacetTree>(std::move(facets));
-  if (evaluator == Evaluator::grid && !built.tree->empty()) {
-    Box box;
-    for (const Entity& entity : groups_[index].entities) {
-      box.extend(topology_.box(entity));
-    }
-    GridOptions grid_options;
-    grid_options.tolerance = options_.tolerance;
-    // Threads cost more than they save on few facets, most of all where processors are busy.
-    grid_options.threads = built.tree->facets().size() < 2000 ? 1 : options_.threads;
-    if (options_.progress) {
-      const std::string what =
-          "Background grid " + std::to_string(index + 1) + " of " + std::to_string(groups_.size()) +
-          " (" +
-          entity_names({groups_[index].entities.rbegin(), groups_[index].entities.rend()}, 2) + ")";
-      grid_options.progress = [this, what](double done) { options_.progress(what, done); };
-    }
-    built.grid = std::make_unique<BackgroundGrid>(built.tree, built.size_limit, box, grid_options);
-  }
-  Group& group = groups_[index];
-  group.size_limit = built.size_limit;
-  group.tree = std::move(built.tree);
-  group.grid = std::move(built.grid);
+  const int threads = threads_for(facets.size());
+  group.tree = std::make_shared<FacetTree>(std::move(facets), threads);
+  group.size_limit = size_limit;
+  group.grid = nullptr;
   group.changed = false;
+  group.tree_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+int SizeField::threads_for(std::size_t facets) const {
+  // Threads cost more than they save on few facets, most of all where processors are busy.
+  return facets < 2000 ? 1 : options_.threads;
+}
+
+void SizeField::build_grid(std::size_t index, Group& group) const {
+  GridOptions grid_options;
+  grid_options.tolerance = options_.tolerance;
+  grid_options.threads = threads_for(group.tree->facets().size());
+  if (options_.progress) {
+    const std::string what =
+        "Background grid " + std::to_string(index + 1) + " of " + std::to_string(groups_.size()) +
+        " (" + entity_names({group.entities.rbegin(), group.entities.rend()}, 2) + ")";
+    grid_options.progress = [this, what](double done) { options_.progress(what, done); };
+  }
+  group.grid =
+      std::make_shared<BackgroundGrid>(group.tree, group.size_limit, box_of(group), grid_options);
+}
+
+// ==== Answers
 
 const SizeField::Group* SizeField::group(const Entity& entity) const {
   const auto found = group_of_.find(entity);
@@ -219,7 +278,11 @@ double SizeField::size(const Entity& entity, const Vec3& p) const {
   if (found == nullptr || !found->tree || !p.allFinite()) {
     return no_size;
   }
-  return found->grid ? found->grid->size(p) : found->tree->size(p, found->size_limit);
+  bool interpolated = false;
+  const double size =
+      found->grid ? found->grid->size(p, interpolated) : found->tree->size(p, found->size_limit);
+  found->answers->add(interpolated ? AnswerCount::grid : AnswerCount::exact);
+  return size;
 }
 
 double SizeField::exact_size(const Entity& entity, const Vec3& p) const {
@@ -229,6 +292,57 @@ double SizeField::exact_size(const Entity& entity, const Vec3& p) const {
   }
   return found->tree->size(p, found->size_limit);
 }
+
+/// `ask(points, count, sizes)` for stretches of points that are finite; `no_size` for the others.
+template <typename Ask>
+void SizeField::ask_at_finite(const Vec3* points, std::size_t count, double* sizes, Ask ask) const {
+  for (std::size_t i = 0; i < count;) {
+    std::size_t end = i;
+    while (end < count && points[end].allFinite()) {
+      ++end;
+    }
+    if (end > i) {
+      ask(points + i, end - i, sizes + i);
+    }
+    if (end < count) {
+      sizes[end++] = no_size;
+    }
+    i = end;
+  }
+}
+
+void SizeField::sizes(const Entity& entity, const Vec3* points, std::size_t count,
+                      double* sizes) const {
+  const Group* found = group(entity);
+  if (found == nullptr || !found->tree) {
+    std::fill(sizes, sizes + count, no_size);
+    return;
+  }
+  ask_at_finite(points, count, sizes, [found](const Vec3* from, std::size_t n, double* to) {
+    std::size_t interpolated = 0;
+    if (found->grid) {
+      interpolated = found->grid->sizes(from, n, to);
+    } else {
+      found->tree->sizes(from, n, found->size_limit, to);
+    }
+    found->answers->add(AnswerCount::grid, interpolated);
+    found->answers->add(AnswerCount::exact, n - interpolated);
+  });
+}
+
+void SizeField::exact_sizes(const Entity& entity, const Vec3* points, std::size_t count,
+                            double* sizes) const {
+  const Group* found = group(entity);
+  if (found == nullptr || !found->tree) {
+    std::fill(sizes, sizes + count, no_size);
+    return;
+  }
+  ask_at_finite(points, count, sizes, [found](const Vec3* from, std::size_t n, double* to) {
+    found->tree->sizes(from, n, found->size_limit, to);
+  });
+}
+
+// ==== Summary
 
 std::vector<SizeField::GroupSummary> SizeField::groups() const {
   std::vector<GroupSummary> result;
@@ -242,6 +356,9 @@ std::vector<SizeField::GroupSummary> SizeField::groups() const {
     if (group.tree) {
       summary.facets = group.tree->facets().size();
       summary.tree_bytes = group.tree->memory_bytes();
+      summary.tree_seconds = group.tree_seconds;
+      summary.exact_answers = group.answers->total(AnswerCount::exact);
+      summary.answers = summary.exact_answers + group.answers->total(AnswerCount::grid);
     }
     if (group.grid) {
       summary.has_grid = true;
@@ -281,12 +398,26 @@ std::string SizeField::summary() const {
       text << ' ' << function + 1;
     }
     text << ", " << grouped_digits(group.facets) << " facets";
+    const auto megabytes = [](std::size_t bytes) {
+      return rounded(static_cast<double>(bytes) / 1e6, 1) + " MB";
+    };
+    if (group.facets > 0) {
+      text << ", tree " << megabytes(group.tree_bytes) << " in " << rounded(group.tree_seconds, 2)
+           << " s";
+    }
     if (group.has_grid) {
       const BackgroundGrid::Statistics& grid = group.grid;
       text << ", grid of " << grouped_digits(grid.interpolated_leaves + grid.exact_leaves)
            << " cells (" << grouped_digits(grid.exact_leaves) << " exact), depth " << grid.depth
-           << ", " << rounded(static_cast<double>(grid.bytes + group.tree_bytes) / 1e6, 1)
-           << " MB, " << rounded(grid.seconds, 2) << " s";
+           << ", " << megabytes(grid.bytes) << " in " << rounded(grid.seconds, 2) << " s";
+    } else if (group.facets > 0) {
+      text << ", no grid";
+    }
+    if (group.answers > 0) {
+      const double share =
+          static_cast<double>(group.exact_answers) / static_cast<double>(group.answers);
+      text << ", " << grouped_digits(group.answers) << " sizes answered, "
+           << rounded(100.0 * share, 0) << " % exactly";
     }
     text << '\n';
   }

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "answer_count.h"
 #include "background_grid.h"
 #include "region_walls.h"
 #include "size_function.h"
@@ -18,13 +19,14 @@ namespace meshgrow {
 
 /// Who answers `SizeField::size`.
 enum class Evaluator {
-  grid,  ///< the background grid of the entity's group
-  exact  ///< the tree: slower a size, nothing to build
+  automatic,  ///< the tree, until so many sizes are expected that a grid pays
+  grid,       ///< the background grid of the entity's group
+  exact       ///< the tree: slower a size, nothing to build
 };
 
 struct FieldOptions {
   double tolerance = 0.05;  ///< of the background grids, relative
-  Evaluator evaluator = Evaluator::grid;
+  Evaluator evaluator = Evaluator::automatic;
   int threads = 0;  ///< that build grids; 0: OMP_NUM_THREADS, else all processors
   /// Called while a grid is built, from the building thread only: what is built, finished fraction.
   std::function<void(const std::string&, double)> progress;
@@ -77,8 +79,11 @@ class SizeField {
 
   /// Brings trees and grids of the groups of these entities up to date (of all groups, if
   /// `entities` is empty). Groups not built since a change answer as before it; never built ones,
-  /// `no_size`.
-  void build(const std::vector<Entity>& entities = {});
+  /// `no_size`. An automatic evaluator builds a grid only where volumes among the entities are
+  /// expected to be asked for so many sizes that it pays: `sizes_per_tetrahedron` is how many
+  /// sizes the mesher asks for; 0, the default, if nobody is about to mesh. `entities` of lower
+  /// dimension are never asked for so many.
+  void build(const std::vector<Entity>& entities = {}, double sizes_per_tetrahedron = 0.0);
 
   /// Brings the trees of all groups up to date, and no grids: changed groups answer exactly until
   /// the next `build`.
@@ -97,6 +102,11 @@ class SizeField {
   /// The same without the grid: the minimum over all facets.
   double exact_size(const Entity& entity, const Vec3& p) const;
 
+  /// Both for many points of an entity, in less time each.
+  void sizes(const Entity& entity, const Vec3* points, std::size_t count, double* sizes) const;
+  void exact_sizes(const Entity& entity, const Vec3* points, std::size_t count,
+                   double* sizes) const;
+
   struct GroupSummary {
     std::vector<Entity> entities;
     std::vector<std::size_t> functions;
@@ -105,6 +115,9 @@ class SizeField {
     bool has_grid = false;
     BackgroundGrid::Statistics grid;
     std::size_t tree_bytes = 0;
+    double tree_seconds = 0.0;        ///< wall time of building
+    std::uint64_t answers = 0;        ///< of `size` and `sizes`, since the group was first built
+    std::uint64_t exact_answers = 0;  ///< those that were searched for in the tree
   };
   std::vector<GroupSummary> groups() const;
 
@@ -134,13 +147,21 @@ class SizeField {
     bool changed = true;
     double size_limit = no_size;
     std::shared_ptr<const FacetTree> tree;
-    std::unique_ptr<const BackgroundGrid> grid;
+    double tree_seconds = 0.0;
+    std::shared_ptr<AnswerCount> answers = std::make_shared<AnswerCount>();
+    std::shared_ptr<const BackgroundGrid> grid;
   };
 
   void regroup();
   void set_facets(std::size_t function, SizedFacets facets);
-  void build_group(std::size_t index, Evaluator evaluator);
-  bool lacks_grid(const Group& group) const;
+  void build_tree(Group& group) const;
+  void build_grid(std::size_t index, Group& group) const;
+  int threads_for(std::size_t facets) const;
+  Box box_of(const Group& group) const;
+  bool wants_grid(const Group& group, const std::vector<Entity>& entities,
+                  double sizes_per_tetrahedron) const;
+  template <typename Ask>
+  void ask_at_finite(const Vec3* points, std::size_t count, double* sizes, Ask ask) const;
   const Group* group(const Entity& entity) const;
 
   Topology topology_;

@@ -81,7 +81,10 @@ FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::
   FieldPointer field(meshgrow_field_create());
   check(field ? 0 : 1);
   check(meshgrow_field_set_option(field.get(), "tolerance", arguments.tolerance));
-  check(meshgrow_field_set_option(field.get(), "exact", arguments.exact ? 1.0 : 0.0));
+  const double evaluator = arguments.evaluator == "exact"  ? 2.0
+                           : arguments.evaluator == "grid" ? 1.0
+                                                           : 0.0;
+  check(meshgrow_field_set_option(field.get(), "evaluator", evaluator));
   check(meshgrow_field_set_option(field.get(), "strict", arguments.strict ? 1.0 : 0.0));
   check(meshgrow_field_set_option(field.get(), "calibrate", arguments.calibrate ? 1.0 : 0.0));
   for (const std::string& text : texts) {

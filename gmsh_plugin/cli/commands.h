@@ -11,7 +11,7 @@ struct FieldArguments {
   std::string file;
   double defaults_limit = 0.0;  ///< size limit of the default functions; 0: none of them
   double tolerance = 0.05;
-  bool exact = false;
+  std::string evaluator = "auto";
   bool strict = false;
   bool calibrate = false;
 };

@@ -37,7 +37,12 @@ int main(int argc, char** argv) {
         ->add_option("--tolerance", field_arguments.tolerance,
                      "Relative tolerance of the background grid")
         ->capture_default_str();
-    command->add_flag("--exact", field_arguments.exact, "Exact sizes, no background grid");
+    command
+        ->add_option("--evaluator", field_arguments.evaluator,
+                     "Who answers sizes: exact (a tree of facets), grid (a background grid) or "
+                     "auto (a grid where it pays)")
+        ->check(CLI::IsMember({"auto", "grid", "exact"}))
+        ->capture_default_str();
     command->add_flag("--strict", field_arguments.strict,
                       "A source without a mesh is an error, not a warning");
     command->add_flag("--calibrate", field_arguments.calibrate,

@@ -685,6 +685,72 @@ TEST(SizeField, EvaluatorDecidesWhoAnswers) {
   EXPECT_EQ(exact.groups()[0].facets, 800u);
 }
 
+TEST(SizeField, AutomaticEvaluatorBuildsAGridWhereItPays) {
+  FieldOptions options = grid_options();
+  options.evaluator = Evaluator::automatic;
+  SizeField field = left_field(options, 20);
+  const auto has_grid = [&field] { return field.groups()[0].has_grid; };
+  EXPECT_FALSE(has_grid()) << "nobody is about to mesh";
+  field.build({left_volume}, 0.2);
+  EXPECT_FALSE(has_grid()) << "few sizes are asked for";
+  field.build({left_end}, 1e9);
+  EXPECT_FALSE(has_grid()) << "surfaces ask for few sizes";
+  field.build({left_volume}, 1e9);
+  EXPECT_TRUE(has_grid());
+  // What there is, is kept.
+  field.build({left_volume}, 0.0);
+  EXPECT_TRUE(has_grid());
+}
+
+TEST(SizeField, CountsItsAnswers) {
+  const SizeField field = left_field(grid_options(), 20);
+  const Box inside(Vec3(0, 0, 0), Vec3(1, 1, 1));
+  test::Random random(12);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 1000; ++i) {
+    points.push_back(test::random_in_box(random, inside));
+  }
+  std::vector<double> sizes(points.size());
+  field.sizes(left_volume, points.data(), points.size(), sizes.data());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_EQ(sizes[i], field.size(left_volume, points[i])) << "seed 12";
+  }
+  field.exact_size(left_volume, points[0]);  // does not count
+  const SizeField::GroupSummary group = field.groups()[0];
+  EXPECT_EQ(group.answers, 2000u);
+  EXPECT_GT(group.exact_answers, 0u);
+  EXPECT_LT(group.exact_answers, 2000u);
+  EXPECT_NE(field.summary().find("2,000 sizes answered"), std::string::npos) << field.summary();
+}
+
+TEST(SizeField, ManyPointsAtOnceGetWhatEachGets) {
+  // Also where a point is not finite, or no function acts.
+  for (const Evaluator evaluator : {Evaluator::grid, Evaluator::exact}) {
+    FieldOptions options = grid_options();
+    options.evaluator = evaluator;
+    const SizeField field = left_field(options, 20);
+    test::Random random(13);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 300; ++i) {
+      points.push_back(test::random_in_box(random, test::cube(2.0)));
+      if (i % 37 == 0) {
+        points.push_back(Vec3(0.5, std::nan(""), 0.5));
+        points.push_back(Vec3(1e300, 0.5, 0.5));
+      }
+    }
+    for (const Entity& entity : {left_volume, right_volume}) {
+      std::vector<double> sizes(points.size());
+      std::vector<double> exact(points.size());
+      field.sizes(entity, points.data(), points.size(), sizes.data());
+      field.exact_sizes(entity, points.data(), points.size(), exact.data());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_EQ(sizes[i], field.size(entity, points[i])) << "seed 13, point " << i;
+        ASSERT_EQ(exact[i], field.exact_size(entity, points[i])) << "seed 13, point " << i;
+      }
+    }
+  }
+}
+
 TEST(SizeField, FinerToleranceMakesMoreCells) {
   FieldOptions options = grid_options();
   options.tolerance = 0.02;

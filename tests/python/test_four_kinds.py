@@ -61,7 +61,7 @@ def test_smallest_of_four_kinds_rules():
 def test_one_grid_for_each_set_of_functions():
     inner, outer, face = ball_near_a_wall()
     premesh([face], 0.2)
-    field = add_all(meshgrow.SizeField(), inner, outer, face)
+    field = add_all(meshgrow.SizeField(evaluator="grid"), inner, outer, face)
     field.refresh()
     groups = field.statistics()["groups"]
     assert [g["functions"] for g in groups if g["grid"]] == [[0, 1, 2, 3]]

@@ -8,9 +8,9 @@ import models
 from meshes import element_count, has_elements, options, premesh
 
 
-def sphere_in_box_with_late_source():
+def sphere_in_box_with_late_source(**options_of_field):
     model = models.sphere_in_box(4.0)
-    field = meshgrow.SizeField()
+    field = meshgrow.SizeField(**options_of_field)
     field.add_fixed([model.sphere], [model.sphere], 0.15, 1.0, 0.15)
     field.add_mesh([model.sphere], [model.outer], 1.2, 0.6)
     return model, field
@@ -44,7 +44,7 @@ def test_a_source_meshed_in_the_same_run_is_read_before_the_next_dimension(algor
 
 
 def test_sizes_of_a_late_source_are_exact_until_refresh_builds_grids():
-    model, field = sphere_in_box_with_late_source()
+    model, field = sphere_in_box_with_late_source(evaluator="grid")
     field.register()
     with options(Mesh_MeshSizeMax=0.6):
         gmsh.model.mesh.generate(2)

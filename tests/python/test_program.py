@@ -51,7 +51,8 @@ def assert_refused(result, *words):
 
 def test_meshes_a_model_and_tells_what_comes_next(box, tmp_path):
     out = tmp_path / "out.msh"
-    text = mesh(box, "-3", "-o", out, "--size-function", FIXED, "--size-function", MESH)
+    text = mesh(box, "-3", "-o", out, "--size-function", FIXED, "--size-function", MESH,
+                "--evaluator", "grid")
     assert out.stat().st_size > 1000
     assert "Meshing, pass 1" in text
     assert "Background grid" in text

@@ -164,7 +164,7 @@ def test_functions_act_only_on_their_own_attachments():
 @pytest.mark.parametrize("tolerance", [0.02, 0.05, 0.2])
 def test_grid_is_never_coarser_than_its_tolerance_and_hardly_finer(tolerance):
     model = premeshed_sphere()
-    field = field_of([model.sphere], [model.outer], tolerance=tolerance)
+    field = field_of([model.sphere], [model.outer], tolerance=tolerance, evaluator="grid")
     points = points_around(count=4000)
     grid, exact = field.size(*model.outer, points), field.exact_size(*model.outer, points)
     assert np.all(grid <= (1 + tolerance) * exact * (1 + EXACT))

@@ -21,7 +21,9 @@ class SizeField:
     tolerance
         relative tolerance of the background grids: a size is at most ``1 + tolerance`` times exact.
     evaluator
-        ``"grid"`` interpolates in background grids, ``"exact"`` asks the tree of facets each time.
+        ``"exact"`` asks the tree of facets each time, ``"grid"`` interpolates in background grids;
+        ``"auto"`` builds a grid before a volume is meshed that will ask for so many sizes that it
+        pays.
     strict
         a mesh size function whose source has no mesh is an error instead of a warning.
     threads
@@ -34,15 +36,16 @@ class SizeField:
         exception from it stops the work; what was meshed is kept.
     """
 
-    def __init__(self, tolerance=0.05, evaluator="grid", strict=False, threads=0,
+    def __init__(self, tolerance=0.05, evaluator="auto", strict=False, threads=0,
                  progress=None, calibrate=False):
         self._raised = Raised()
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
-        if evaluator not in ("grid", "exact"):
-            raise ValueError('evaluator must be "grid" or "exact", not %r' % (evaluator,))
+        evaluators = ("auto", "grid", "exact")
+        if evaluator not in evaluators:
+            raise ValueError('evaluator must be "auto", "grid" or "exact", not %r' % (evaluator,))
         self._set("tolerance", tolerance)
-        self._set("exact", evaluator == "exact")
+        self._set("evaluator", evaluators.index(evaluator))
         self._set("strict", strict)
         self._set("threads", threads)
         self._set("calibrate", calibrate)
