@@ -59,7 +59,7 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double siz
   statistics_.depth = nodes_.depth;
   statistics_.bytes = nodes_.blocks.size() * sizeof(nodes_.blocks[0]) +
                       nodes_.corners.size() * sizeof(CornerValues) +
-                      (nodes_.exact_begin.size() + nodes_.exact_data.size()) * 4 +
+                      (nodes_.exact_begin.size() + nodes_.exact_entries.size()) * 4 +
                       table_.size() * sizeof(TableEntry);
 }
 
@@ -128,8 +128,7 @@ BackgroundGrid::NodeCode BackgroundGrid::child(const Spot& spot) const {
 
 double BackgroundGrid::leaf_size(const Spot& spot, const Vec3& p) const {
   if (kind(spot.node) == NodeKind::exact) {
-    const std::uint32_t leaf = index(spot.node);
-    return tree_->smallest(p, exact_entries(leaf), exact_guess(leaf, p)).size;
+    return tree_->fast_size(p, exact_entries(spot.node), size_limit_);
   }
   if (kind(spot.node) == NodeKind::tree) {
     return tree_->size(p, size_limit_);
@@ -168,7 +167,7 @@ std::size_t BackgroundGrid::sizes(const Vec3* points, std::size_t count, double*
   std::array<std::size_t, group> open;
   std::array<std::size_t, group> exact_spots;
   std::array<Vec3, group> exact_points;
-  std::array<FacetTree::Smallest, group> found;
+  std::array<double, group> exact_sizes;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t in_group = std::min(group, count - first);
     std::size_t open_count = 0;
@@ -210,36 +209,23 @@ std::size_t BackgroundGrid::sizes(const Vec3* points, std::size_t count, double*
         continue;
       }
       exact_spots[exact_count] = i;
-      exact_points[exact_count] = points[first + i];
-      found[exact_count] = exact_guess(index(spots[i].node), points[first + i]);
-      ++exact_count;
+      exact_points[exact_count++] = points[first + i];
     }
-    tree_->smallest(
+    tree_->fast_sizes(
         exact_points.data(), exact_count,
-        [&](std::size_t k) { return exact_entries(index(spots[exact_spots[k]].node)); },
-        found.data());
+        [&](std::size_t k) { return exact_entries(spots[exact_spots[k]].node); }, size_limit_,
+        exact_sizes.data());
     for (std::size_t k = 0; k < exact_count; ++k) {
-      sizes[first + exact_spots[k]] = found[k].size;
+      sizes[first + exact_spots[k]] = exact_sizes[k];
     }
   }
   return interpolated;
 }
 
-FacetTree::Entries BackgroundGrid::exact_entries(std::uint32_t leaf) const {
-  const std::uint32_t begin = nodes_.exact_begin[leaf] + 1;
-  const std::uint32_t end = nodes_.exact_begin[leaf + 1];
-  return {nodes_.exact_data.data() + begin, static_cast<int>(end - begin)};
-}
-
-FacetTree::Smallest BackgroundGrid::exact_guess(std::uint32_t leaf, const Vec3& p) const {
-  const std::uint32_t facet = nodes_.exact_data[nodes_.exact_begin[leaf]];
-  if (facet != FacetTree::Smallest::no_facet) {
-    const double size = tree_->facets()[facet].size_at(p);
-    if (size < size_limit_) {
-      return {size, facet};
-    }
-  }
-  return {size_limit_, FacetTree::Smallest::no_facet};
+FacetTree::Entries BackgroundGrid::exact_entries(NodeCode leaf) const {
+  const std::uint32_t begin = nodes_.exact_begin[index(leaf)];
+  const std::uint32_t end = nodes_.exact_begin[index(leaf) + 1];
+  return {nodes_.exact_entries.data() + begin, static_cast<int>(end - begin)};
 }
 
 }  // namespace meshgrow

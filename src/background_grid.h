@@ -79,9 +79,8 @@ class BackgroundGrid {
   struct Nodes {
     std::vector<std::array<NodeCode, 8>> blocks;
     std::vector<CornerValues> corners;
-    std::vector<std::uint32_t> exact_begin;  ///< one more than exact leaves
-    /// Of each exact leaf the facet that rules at its centre, then entries into the tree.
-    std::vector<std::uint32_t> exact_data;
+    std::vector<std::uint32_t> exact_begin;      ///< one more than exact leaves
+    std::vector<simd::NodeEntry> exact_entries;  ///< parts of the tree
     int depth = 0;
   };
 
@@ -100,8 +99,7 @@ class BackgroundGrid {
   bool find_in_table(const Vec3& p, Spot& spot) const;
   NodeCode child(const Spot& spot) const;
   double leaf_size(const Spot& spot, const Vec3& p) const;
-  FacetTree::Entries exact_entries(std::uint32_t leaf) const;
-  FacetTree::Smallest exact_guess(std::uint32_t leaf, const Vec3& p) const;
+  FacetTree::Entries exact_entries(NodeCode leaf) const;
   void fill_table();
   void fill_table(NodeCode node, int depth, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 

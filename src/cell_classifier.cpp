@@ -177,6 +177,19 @@ bool CellClassifier::few_facets_suffice() {
     return false;
   }
   leaf_entries_.resize(static_cast<std::size_t>(query.count));
+  // The others are only good enough beside the facet that rules at the centre, which may not need
+  // to be there by the same measure.
+  if (ruling_.facet != FacetTree::Smallest::no_facet) {
+    const simd::NodeEntry own = tree_.entry_of(ruling_.facet);
+    const auto same_node =
+        std::find_if(leaf_entries_.begin(), leaf_entries_.end(),
+                     [own](simd::NodeEntry entry) { return entry >> 8 == own >> 8; });
+    if (same_node == leaf_entries_.end()) {
+      leaf_entries_.push_back(own);
+    } else {
+      *same_node |= own;
+    }
+  }
   return true;
 }
 

@@ -42,9 +42,8 @@ class CellClassifier {
   /// After a verdict interpolate: what the corner values are to be multiplied by, at most 1.
   double scale() const { return scale_; }
 
-  /// After a verdict keep_facets: the facet that rules at the centre (or none), and entries; the
-  /// minimum of their facets is within (1 + t) of the field in the cell.
-  std::uint32_t ruling_facet() const { return ruling_.facet; }
+  /// After a verdict keep_facets: the minimum of the facets below them, and of the size limit, is
+  /// within (1 + t) of the field in the cell.
   const std::vector<simd::NodeEntry>& leaf_entries() const { return leaf_entries_; }
 
   /// What the children of a cell need.

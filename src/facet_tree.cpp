@@ -13,6 +13,9 @@ namespace {
 /// Of sizes in float, generously.
 constexpr double relative_rounding = 4e-6;
 
+/// Float need not be better than this where it answers alone.
+constexpr float good_enough_for_float = 8e-6f;
+
 /// In units of the tree. Squares of what is farther may not be finite in float.
 constexpr double farthest_for_float = 1e15;
 
@@ -109,6 +112,32 @@ FacetTree::Smallest FacetTree::smallest(const Vec3& p, const Entries& entries,
     search.decide();
   }
   return best;
+}
+
+/// The size lies between the least lower bound of a candidate and the limit.
+double FacetTree::Search::fast_answer(double upper_bound) {
+  const bool nothing_decided = best->facet == Smallest::no_facet;
+  const float least =
+      query->count == 0 || !nothing_decided
+          ? 0.0f
+          : *std::min_element(query->lower_bounds, query->lower_bounds + query->count);
+  if (least >= query->limit * (1.0f - good_enough_for_float)) {
+    return std::min(upper_bound, query->limit * tree->layout_.unit);
+  }
+  decide();
+  return best->size;
+}
+
+double FacetTree::fast_size(const Vec3& p, const Entries& entries, double upper_bound) const {
+  if (empty()) {
+    return upper_bound;
+  }
+  Smallest found{upper_bound, Smallest::no_facet};
+  simd::LeastSize query;
+  Search search{this, &p, &found, &query};
+  search.begin(entries);
+  run(&query, 1);
+  return search.fast_answer(upper_bound);
 }
 
 double FacetTree::size(const Vec3& p, double upper_bound) const {

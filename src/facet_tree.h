@@ -54,6 +54,20 @@ class FacetTree {
   /// the search begins, and what is answered otherwise.
   Smallest smallest(const Vec3& p, const Entries& entries, const Smallest& known) const;
 
+  /// The same size to 1e-5, from above, in less time: where float is good enough for that, it is
+  /// not asked for more. `upper_bound` where nothing is below it.
+  double fast_size(const Vec3& p, const Entries& entries, double upper_bound) const;
+
+  /// The same for several points; entries(i) are those for point i.
+  template <typename EntriesOf>
+  void fast_sizes(const Vec3* points, std::size_t count, EntriesOf entries, double upper_bound,
+                  double* sizes) const;
+
+  /// Where to find a facet alone, or nearly so.
+  simd::NodeEntry entry_of(std::uint32_t facet) const {
+    return layout_.block_entries[facet / simd::lanes];
+  }
+
   /// The same for several points, in less time each. `known` on entry, the answers on return;
   /// entries(i) are those for point i.
   template <typename EntriesOf>
@@ -136,6 +150,7 @@ class FacetTree {
     void begin(const Entries& entries);
     float limit() const;
     void decide();
+    double fast_answer(double upper_bound);
   };
 
   /// Searches begun together.
@@ -175,6 +190,30 @@ void FacetTree::smallest(const Vec3* points, std::size_t count, EntriesOf entrie
     run(queries.data(), in_group);
     for (std::size_t i = 0; i < in_group; ++i) {
       searches[i].decide();
+    }
+  }
+}
+
+template <typename EntriesOf>
+void FacetTree::fast_sizes(const Vec3* points, std::size_t count, EntriesOf entries,
+                           double upper_bound, double* sizes) const {
+  if (empty()) {
+    std::fill(sizes, sizes + count, upper_bound);
+    return;
+  }
+  std::array<simd::LeastSize, searches_at_once> queries;
+  std::array<Search, searches_at_once> searches;
+  std::array<Smallest, searches_at_once> found;
+  for (std::size_t first = 0; first < count; first += searches_at_once) {
+    const std::size_t in_group = std::min(searches_at_once, count - first);
+    for (std::size_t i = 0; i < in_group; ++i) {
+      found[i] = {upper_bound, Smallest::no_facet};
+      searches[i] = {this, points + first + i, &found[i], &queries[i]};
+      searches[i].begin(entries(first + i));
+    }
+    run(queries.data(), in_group);
+    for (std::size_t i = 0; i < in_group; ++i) {
+      sizes[first + i] = searches[i].fast_answer(upper_bound);
     }
   }
 }

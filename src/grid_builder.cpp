@@ -53,7 +53,7 @@ void GridBuilder::build() {
     append_subtree(parts[i], roots[i], open[i]);
     parts[i] = Nodes();
   }
-  grid_.nodes_.exact_begin.push_back(static_cast<std::uint32_t>(grid_.nodes_.exact_data.size()));
+  grid_.nodes_.exact_begin.push_back(static_cast<std::uint32_t>(grid_.nodes_.exact_entries.size()));
   if (options_.progress) {
     options_.progress(1.0);
   }
@@ -145,10 +145,9 @@ GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& 
     nodes.corners.push_back(values);
     return BackgroundGrid::code(NodeKind::interpolated, nodes.corners.size() - 1);
   }
-  nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_data.size()));
-  nodes.exact_data.push_back(classifier.ruling_facet());
-  nodes.exact_data.insert(nodes.exact_data.end(), classifier.leaf_entries().begin(),
-                          classifier.leaf_entries().end());
+  nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_entries.size()));
+  nodes.exact_entries.insert(nodes.exact_entries.end(), classifier.leaf_entries().begin(),
+                             classifier.leaf_entries().end());
   return BackgroundGrid::code(NodeKind::exact, nodes.exact_begin.size() - 1);
 }
 
@@ -157,8 +156,8 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
   const std::size_t first_block = nodes.blocks.size();
   const std::size_t first_corners = nodes.corners.size();
   const std::size_t first_exact = nodes.exact_begin.size();
-  const std::size_t first_datum = nodes.exact_data.size();
-  if (first_datum + part.exact_data.size() > 0xFFFFFFFFu) {
+  const std::size_t first_entry = nodes.exact_entries.size();
+  if (first_entry + part.exact_entries.size() > 0xFFFFFFFFu) {
     throw Error("The background grid has too many exact cells: raise its tolerance.");
   }
   const auto moved = [&](NodeCode code) {
@@ -180,9 +179,10 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
   }
   nodes.corners.insert(nodes.corners.end(), part.corners.begin(), part.corners.end());
   for (const std::uint32_t begin : part.exact_begin) {
-    nodes.exact_begin.push_back(static_cast<std::uint32_t>(first_datum + begin));
+    nodes.exact_begin.push_back(static_cast<std::uint32_t>(first_entry + begin));
   }
-  nodes.exact_data.insert(nodes.exact_data.end(), part.exact_data.begin(), part.exact_data.end());
+  nodes.exact_entries.insert(nodes.exact_entries.end(), part.exact_entries.begin(),
+                             part.exact_entries.end());
   nodes.depth = std::max(nodes.depth, part.depth);
   set_code(place, moved(part_root));
 }

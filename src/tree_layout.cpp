@@ -84,6 +84,7 @@ class TreeBuilder {
     layout_.slopes.resize(layout_.nodes.size());
     node_summaries_.resize(layout_.nodes.size());
     layout_.blocks.resize(blocks);
+    layout_.block_entries.resize(blocks);
     split_top({0, count, 0});
     parallel_for(tasks_.size(), threads_, [&](std::size_t i) { split_subtree(tasks_[i]); });
     bring_into_order();
@@ -294,6 +295,9 @@ void TreeBuilder::finish_node(const Range& range) {
     }
     node.start_size[lane] = summary.start_size;
     node.child[lane] = is_block ? child.first / lanes | WideNode::is_block : child.node;
+    if (is_block) {
+      layout_.block_entries[child.first / lanes] = range.node << 8 | 1u << lane;
+    }
     all.add(summary);
   });
   all.oriented = oriented_box(below.data(), children, all.spread, all.box);

@@ -27,6 +27,7 @@ struct TreeLayout {
   std::vector<WideBoxes> boxes;  ///< of each node
   std::vector<float> slopes;     ///< smallest below each node
   std::vector<simd::FacetBlock> blocks;
+  std::vector<simd::NodeEntry> block_entries;  ///< where each block hangs
 };
 
 /// Brings the facets into order as well. The same for any number of threads (0: as many as
