@@ -76,6 +76,20 @@ OrientedBox oriented_box(const Vec3* points, std::size_t count, const Spread& sp
   return smallest_box(points, count, spread, box);
 }
 
+OrientedBox oriented_box(const Vec3* points, std::size_t count, const Vec3& normal,
+                         const Box& box) {
+  const OrientedBox upright{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.sizes()};
+  Eigen::Matrix3d axes;
+  axes.col(0) = normal.normalized();
+  // The tree cuts pieces of a surface along the axes of coordinates.
+  int flattest = 0;
+  axes.col(0).cwiseAbs().minCoeff(&flattest);
+  axes.col(1) = axes.col(0).cross(Vec3::Unit(flattest)).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  const OrientedBox oblique = box_along(axes, points, count);
+  return surface(oblique) < surface(upright) ? oblique : upright;
+}
+
 OrientedBox oriented_box(const OrientedBox* boxes, std::size_t count, const Spread& spread,
                          const Box& box) {
   return smallest_box(boxes, count, spread, box);

@@ -119,7 +119,8 @@ class TreeBuilder {
   void split(std::uint32_t first, std::uint32_t count, std::uint32_t children,
              std::uint32_t facets_per_child);
   Summary fill_block(std::uint32_t index, std::uint32_t first, std::uint32_t count);
-  void fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
+  /// Returns the normal, as long as twice the facet's area.
+  Vec3 fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
                  const Vec3& origin) const;
   Vec3 scaled(const Vec3& p) const { return (p - layout_.centre) * scale_; }
 
@@ -318,11 +319,15 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   double reach = 0.0;
   double start_size = infinity;
   double slope = infinity;
+  Vec3 normal = Vec3::Zero();
+  double areas = 0.0;
   std::array<Vec3, 3 * lanes> corners;
   std::size_t corner_count = 0;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
     const SizedFacet& facet = facets_[first + lane];
-    fill_lane(block, lane, facet, origin);
+    const Vec3 area = fill_lane(block, lane, facet, origin);
+    normal += area.dot(normal) < 0.0 ? Vec3(-area) : area;
+    areas += area.norm();
     start_size = std::min(start_size, facet.start_size);
     slope = std::min(slope, facet.slope);
     for (int k = 0; k < facet.facet.corner_count; ++k) {
@@ -335,19 +340,22 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   }
   summary.start_size = rounded_down(start_size / layout_.unit);
   summary.slope = rounded_down(slope);
-  summary.oriented = oriented_box(corners.data(), corner_count, summary.spread, summary.box);
+  // Curves, and corners, have no normal. The facets of a surface may be turned either way.
+  summary.oriented = normal.squaredNorm() > 0.25 * areas * areas
+                         ? oriented_box(corners.data(), corner_count, normal, summary.box)
+                         : oriented_box(corners.data(), corner_count, summary.spread, summary.box);
   // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times.
   block.place_error = static_cast<float>(1e-6 * std::sqrt(reach) + 1e-17);
   return summary;
 }
 
-void TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& sized,
+Vec3 TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& sized,
                             const Vec3& origin) const {
   const Facet& facet = sized.facet;
   std::array<Vec3, 3> c;
   for (int k = 0; k < 3; ++k) {
     // Corners that the facet does not have repeat its last one.
-    c[k] = (facet.corners[std::min(k, facet.corner_count - 1)] - origin) / layout_.unit;
+    c[k] = (facet.corners[std::min(k, facet.corner_count - 1)] - origin) * scale_;
   }
 
   // The longest side first.
@@ -360,8 +368,7 @@ void TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFa
   const double length = std::sqrt(sides[longest]);
   Vec3 along = Vec3::UnitX();
   if (length > 0.0) {
-    along = (b - a) / length;
-    along.normalize();
+    along = (b - a) * (1.0 / length);
   }
   const double foot = along.dot(third - a);
   Vec3 across = (third - a) - foot * along;
@@ -383,6 +390,7 @@ void TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFa
   block.height[lane] = height > 1e-12 * length ? static_cast<float>(height) : 0.0f;
   block.start_size[lane] = static_cast<float>(sized.start_size / layout_.unit);
   block.slope[lane] = static_cast<float>(sized.slope);
+  return (c[1] - c[0]).cross(c[2] - c[0]);
 }
 
 }  // namespace
