@@ -76,11 +76,10 @@ OrientedBox oriented_box(const Vec3* points, std::size_t count, const Spread& sp
   return smallest_box(points, count, spread, box);
 }
 
-OrientedBox oriented_box(const Vec3* points, std::size_t count, const Vec3& normal,
-                         const Box& box) {
+OrientedBox oriented_box(const Vec3* points, std::size_t count, const Vec3& axis, const Box& box) {
   const OrientedBox upright{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.sizes()};
   Eigen::Matrix3d axes;
-  axes.col(0) = normal.normalized();
+  axes.col(0) = axis.normalized();
   // The tree cuts pieces of a surface along the axes of coordinates.
   int flattest = 0;
   axes.col(0).cwiseAbs().minCoeff(&flattest);

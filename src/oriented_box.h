@@ -33,11 +33,11 @@ struct OrientedBox {
   Vec3 half_sizes = Vec3::Zero();                      ///< along the axes
 };
 
-/// Around points with the given box along the axes of coordinates; they lie about at right angles
-/// to the normal, which need not be a unit vector.
-OrientedBox oriented_box(const Vec3* points, std::size_t count, const Vec3& normal, const Box& box);
+/// Around points with the given box along the axes of coordinates; they lie about across the axis,
+/// or along it, which need not be a unit vector.
+OrientedBox oriented_box(const Vec3* points, std::size_t count, const Vec3& axis, const Box& box);
 
-/// The same without a normal.
+/// The same without an axis.
 OrientedBox oriented_box(const Vec3* points, std::size_t count, const Spread& spread,
                          const Box& box);
 

@@ -119,7 +119,7 @@ class TreeBuilder {
   void split(std::uint32_t first, std::uint32_t count, std::uint32_t children,
              std::uint32_t facets_per_child);
   Summary fill_block(std::uint32_t index, std::uint32_t first, std::uint32_t count);
-  /// Returns the normal, as long as twice the facet's area.
+  /// Returns the normal of a triangle, as long as twice its area; a segment itself.
   Vec3 fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
                  const Vec3& origin) const;
   Vec3 scaled(const Vec3& p) const { return (p - layout_.centre) * scale_; }
@@ -340,7 +340,8 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   }
   summary.start_size = rounded_down(start_size / layout_.unit);
   summary.slope = rounded_down(slope);
-  // Curves, and corners, have no normal. The facets of a surface may be turned either way.
+  // Boxes lie across the normal of a piece of a surface, whose facets may be turned either way, and
+  // along a piece of a curve. Corners have neither.
   summary.oriented = normal.squaredNorm() > 0.25 * areas * areas
                          ? oriented_box(corners.data(), corner_count, normal, summary.box)
                          : oriented_box(corners.data(), corner_count, summary.spread, summary.box);
@@ -390,7 +391,8 @@ Vec3 TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFa
   block.height[lane] = height > 1e-12 * length ? static_cast<float>(height) : 0.0f;
   block.start_size[lane] = static_cast<float>(sized.start_size / layout_.unit);
   block.slope[lane] = static_cast<float>(sized.slope);
-  return (c[1] - c[0]).cross(c[2] - c[0]);
+  const Vec3 side = c[1] - c[0];
+  return facet.corner_count == 2 ? side : Vec3(side.cross(c[2] - c[0]));
 }
 
 }  // namespace
