@@ -19,7 +19,7 @@ struct GridOptions {
   /// on it.
   int threads = 0;
   /// A cell with at most so many facets left may keep them and answer from them.
-  int facets_per_exact_leaf = 96;
+  int facets_per_exact_leaf = 192;
   /// Called with the finished fraction in [0, 1], from the calling thread only.
   std::function<void(double)> progress;
 };
