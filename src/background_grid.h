@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "attached_region.h"
 #include "facet_tree.h"
 #include "grid_cell.h"
 
@@ -20,6 +21,9 @@ struct GridOptions {
   int threads = 0;
   /// A cell with at most so many facets left may keep them and answer from them.
   int facets_per_exact_leaf = 192;
+  /// Where sizes will be asked for; everywhere if null. Cells outside are not refined: points in
+  /// them are answered by the tree.
+  std::shared_ptr<const AttachedRegion> region;
   /// Called with the finished fraction in [0, 1], from the calling thread only.
   std::function<void(double)> progress;
 };

@@ -1,6 +1,7 @@
 #include "grid_builder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "error.h"
 #include "parallel.h"
@@ -42,7 +43,7 @@ void GridBuilder::build() {
       open.size(), options_.threads,
       [&](std::size_t i) {
         roots[i] = build_subtree(open[i].cell, open[i].ruling, *open[i].candidates,
-                                 own_classifier(), parts[i]);
+                                 open[i].is_inside, own_classifier(), parts[i]);
       },
       [&](std::size_t done) {
         if (options_.progress && done < open.size()) {
@@ -84,6 +85,11 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
     parallel_for(open.size(), options_.threads, [&](std::size_t i) {
       CellClassifier& own = own_classifier();
       Classified& result = classified[i];
+      if (is_outside(open[i].cell, open[i].is_inside)) {
+        result.verdict = Verdict::keep_facets;
+        result.code = BackgroundGrid::code(NodeKind::tree, 0);
+        return;
+      }
       result.verdict = own.classify(open[i].cell, open[i].ruling, *open[i].candidates);
       if (result.verdict == Verdict::split) {
         result.split = own.split(open[i].cell);
@@ -104,7 +110,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       const auto candidates = std::make_shared<CellCandidates>(result.split.candidates);
       for (int child = 0; child < 8; ++child) {
         next.push_back({child_cell(open[i].cell, child, result.split.lattice),
-                        result.split.ruling[child], candidates, block, child});
+                        result.split.ruling[child], candidates, block, child, open[i].is_inside});
       }
     }
     open = std::move(next);
@@ -112,11 +118,25 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   return open;
 }
 
+/// Looks only where it is not known yet whether the cell is inside.
+bool GridBuilder::is_outside(const GridCell& cell, bool& is_inside) const {
+  if (!options_.region || is_inside) {
+    return false;
+  }
+  const AttachedRegion::Place place = options_.region->place(
+      cell.centre(grid_.cube_), std::sqrt(3.0) * cell.half_edge(grid_.cube_));
+  is_inside = place == AttachedRegion::Place::inside;
+  return place == AttachedRegion::Place::outside;
+}
+
 GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
                                                  const FacetTree::Smallest& ruling,
-                                                 const CellCandidates& candidates,
+                                                 const CellCandidates& candidates, bool is_inside,
                                                  CellClassifier& classifier, Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
+  if (is_outside(cell, is_inside)) {
+    return BackgroundGrid::code(NodeKind::tree, 0);
+  }
   const Verdict verdict = classifier.classify(cell, ruling, candidates);
   if (verdict != Verdict::split) {
     return append_leaf(verdict, cell, classifier, nodes);
@@ -129,7 +149,7 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
   nodes.blocks.emplace_back();
   for (int child = 0; child < 8; ++child) {
     const NodeCode code = build_subtree(child_cell(cell, child, split.lattice), split.ruling[child],
-                                        split.candidates, classifier, nodes);
+                                        split.candidates, is_inside, classifier, nodes);
     nodes.blocks[block][child] = code;
   }
   return BackgroundGrid::code(NodeKind::block, block);

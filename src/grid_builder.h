@@ -31,13 +31,15 @@ class GridBuilder {
     std::shared_ptr<const CellCandidates> candidates;
     std::size_t block = 0;
     int child = 0;
+    bool is_inside = false;  ///< all of it is known to be inside the region
   };
 
   CellClassifier& own_classifier();
   std::vector<OpenCell> build_top();
   NodeCode build_subtree(const GridCell& cell, const FacetTree::Smallest& ruling,
-                         const CellCandidates& candidates, CellClassifier& classifier,
-                         Nodes& nodes) const;
+                         const CellCandidates& candidates, bool is_inside,
+                         CellClassifier& classifier, Nodes& nodes) const;
+  bool is_outside(const GridCell& cell, bool& is_inside) const;
   static NodeCode append_leaf(Verdict verdict, const GridCell& cell,
                               const CellClassifier& classifier, Nodes& nodes);
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);

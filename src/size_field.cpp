@@ -242,6 +242,25 @@ int SizeField::threads_for(std::size_t facets) const {
   return facets < 2000 ? 1 : options_.threads;
 }
 
+/// Null where it is not known.
+std::shared_ptr<const AttachedRegion> SizeField::region_of(const Group& group) const {
+  std::vector<Entity> volumes;
+  for (const Entity& entity : group.entities) {
+    if (entity.dim == 3) {
+      volumes.push_back(entity);
+    }
+  }
+  if (!options_.boundary || volumes.empty()) {
+    return nullptr;
+  }
+  std::vector<std::array<Vec3, 3>> triangles = options_.boundary(volumes);
+  if (triangles.empty()) {
+    return nullptr;
+  }
+  const int threads = threads_for(triangles.size());
+  return std::make_shared<AttachedRegion>(std::move(triangles), threads);
+}
+
 void SizeField::build_grid(std::size_t index, Group& group) const {
   GridOptions grid_options;
   grid_options.tolerance = options_.tolerance;
@@ -252,6 +271,7 @@ void SizeField::build_grid(std::size_t index, Group& group) const {
         " (" + entity_names({group.entities.rbegin(), group.entities.rend()}, 2) + ")";
     grid_options.progress = [this, what](double done) { options_.progress(what, done); };
   }
+  grid_options.region = region_of(group);
   group.grid =
       std::make_shared<BackgroundGrid>(group.tree, group.size_limit, box_of(group), grid_options);
 }

@@ -28,6 +28,10 @@ struct FieldOptions {
   double tolerance = 0.05;  ///< of the background grids, relative
   Evaluator evaluator = Evaluator::automatic;
   int threads = 0;  ///< that build grids; 0: OMP_NUM_THREADS, else all processors
+  /// The triangles of the boundary meshes of volumes, those of a face that two of them share twice;
+  /// empty if a face has no mesh. Asked, where there is such a function, when a grid is built, and
+  /// spares the cells outside.
+  std::function<std::vector<std::array<Vec3, 3>>(const std::vector<Entity>&)> boundary;
   /// Called while a grid is built, from the building thread only: what is built, finished fraction.
   std::function<void(const std::string&, double)> progress;
 };
@@ -158,6 +162,7 @@ class SizeField {
   void build_grid(std::size_t index, Group& group) const;
   int threads_for(std::size_t facets) const;
   Box box_of(const Group& group) const;
+  std::shared_ptr<const AttachedRegion> region_of(const Group& group) const;
   bool wants_grid(const Group& group, const std::vector<Entity>& entities,
                   double sizes_per_tetrahedron) const;
   template <typename Ask>

@@ -89,6 +89,9 @@ class TreeBuilder {
     parallel_for(tasks_.size(), threads_, [&](std::size_t i) { split_subtree(tasks_[i]); });
     bring_into_order();
     parallel_for(tasks_.size(), threads_, [&](std::size_t i) { finish_subtree(tasks_[i]); });
+    for (const Range& block : lone_blocks_) {
+      finish_block(block);
+    }
     for (std::size_t i = top_.size(); i-- > 0;) {
       finish_node(top_[i]);
     }
@@ -113,6 +116,7 @@ class TreeBuilder {
   void split_subtree(const Range& range);
   void bring_into_order();
   void finish_subtree(const Range& range);
+  void finish_block(const Range& range);
   void finish_node(const Range& range);
   template <typename Visit>
   void for_each_child(const Range& range, Visit visit) const;
@@ -131,6 +135,7 @@ class TreeBuilder {
   std::vector<Item> items_;
   std::vector<Range> tasks_;
   std::vector<Range> top_;
+  std::vector<Range> lone_blocks_;  ///< children of top nodes
   /// Of blocks, for the nodes above them.
   std::vector<Summary> block_summaries_;
   std::vector<Summary> node_summaries_;
@@ -228,7 +233,13 @@ void TreeBuilder::split_top(const Range& range) {
   }
   top_.push_back(range);
   split_children(range);
-  for_each_child(range, [&](std::uint32_t, const Range& child) { split_top(child); });
+  for_each_child(range, [&](std::uint32_t, const Range& child) {
+    if (child.blocks() > 1) {
+      split_top(child);
+    } else {
+      lone_blocks_.push_back(child);
+    }
+  });
 }
 
 void TreeBuilder::split_subtree(const Range& range) {
@@ -243,10 +254,11 @@ void TreeBuilder::split_subtree(const Range& range) {
 void TreeBuilder::bring_into_order() {
   SizedFacets ordered(facets_.size());
   layout_.order.resize(facets_.size());
-  parallel_for(tasks_.size(), threads_, [&](std::size_t t) {
-    constexpr std::uint32_t ahead = 12;  // memory is slow to answer
-    const std::uint32_t end = tasks_[t].first + tasks_[t].count;
-    for (std::uint32_t i = tasks_[t].first; i < end; ++i) {
+  constexpr std::size_t chunk = 1 << 13;
+  parallel_for((facets_.size() + chunk - 1) / chunk, threads_, [&](std::size_t c) {
+    constexpr std::size_t ahead = 12;  // memory is slow to answer
+    const std::size_t end = std::min(facets_.size(), (c + 1) * chunk);
+    for (std::size_t i = c * chunk; i < end; ++i) {
       const char* later =
           reinterpret_cast<const char*>(&facets_[items_[std::min(i + ahead, end - 1)].facet]);
       __builtin_prefetch(later);
@@ -264,11 +276,15 @@ void TreeBuilder::finish_subtree(const Range& range) {
     if (child.blocks() > 1) {
       finish_subtree(child);
     } else {
-      const std::uint32_t block = child.first / lanes;
-      block_summaries_[block] = fill_block(block, child.first, child.count);
+      finish_block(child);
     }
   });
   finish_node(range);
+}
+
+void TreeBuilder::finish_block(const Range& range) {
+  const std::uint32_t block = range.first / lanes;
+  block_summaries_[block] = fill_block(block, range.first, range.count);
 }
 
 void TreeBuilder::finish_node(const Range& range) {

@@ -615,7 +615,7 @@ void expect_rises_to_one(const std::vector<double>& fractions) {
 }
 
 TEST(BackgroundGrid, ProgressRisesToOne) {
-  const std::vector<double> fractions = progress_of(sphere(1000), 1);
+  const std::vector<double> fractions = progress_of(sphere(20000), 1);
   expect_rises_to_one(fractions);
   EXPECT_GT(fractions.size(), 10u);
 }

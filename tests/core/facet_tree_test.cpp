@@ -248,6 +248,32 @@ TEST(FacetTree, SizeEqualsBruteForceFarFromTheOrigin) {
   }
 }
 
+TEST(FacetTree, SizeEqualsBruteForceForAnyNumberOfFacets) {
+  // Around what fills blocks, nodes and pieces of parallel work.
+  for (const std::size_t full : {8u, 64u, 512u, 4096u, 8192u, 32768u}) {
+    for (const std::size_t count : {full - 1, full, full + 1, full + 8, full + 9, full + 64 + 1}) {
+      const unsigned seed = 700 + static_cast<unsigned>(count);
+      Random random(seed);
+      RandomFacets wanted;
+      wanted.mix = FacetMix::triangles;
+      wanted.count = count;
+      wanted.smallest_size = 1e-2;
+      SizedFacets facets = test::random_facets(random, wanted);
+      const FacetTree tree(facets, 2);
+      ASSERT_EQ(tree.facets().size(), count);
+      for (int i = 0; i < 20; ++i) {
+        const Vec3 p = test::random_query(random, facets, wanted.box);
+        const double expected = test::brute_force_size(facets, p);
+        ASSERT_NEAR(tree.size(p), expected, 1e-12 * expected) << query_text(seed, i, p);
+      }
+      // The last facet rules where it alone is small.
+      facets.back().start_size = 1e-6;
+      const Vec3 corner = facets.back().facet.corners[0];
+      ASSERT_NEAR(FacetTree(facets).size(corner), 1e-6, 1e-12) << "seed " << seed;
+    }
+  }
+}
+
 TEST(FacetTree, SmallFacetFurtherAwayRulesOverTheNearest) {
   const double slope = 0.2;
   const SizedFacets facets = {{Facet::segment({1, -1, 0}, {1, 1, 0}), 1.0, slope},
