@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
-# Sets up a fresh machine and runs all tests, against Debian's Gmsh 4.8.4 and the newest from PyPI.
-# Arguments go to ctest, for example: tests/run.sh -R grid
+# Sets up a fresh machine and runs all tests, against Debian's Gmsh 4.8.4 and the newest from PyPI,
+# then the benchmarks on small inputs: they check results as well. Arguments go to ctest, for
+# example: tests/run.sh -R grid; then the benchmarks are left out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Peers of the benchmarks.
+extra_packages=(libcgal-dev libembree-dev libbenchmark-dev)
 . tests/setup.sh
 
 if command -v clang-format >/dev/null; then
@@ -17,5 +20,10 @@ ctest --test-dir "$build" --output-on-failure -j2 "$@" | tee "$results" || statu
 passed=$(grep -c ' Passed ' "$results" || true)
 failed=$(grep -cE '\*\*\*(Failed|Timeout|Exception|Not Run)' "$results" || true)
 skipped=$(grep -c '\*\*\*Skipped' "$results" || true)
+benchmarks=0
+if [ $# = 0 ]; then
+  tests/run_benchmarks.sh --quick || benchmarks=$?
+  [ "$benchmarks" = 0 ] || printf '\nThe benchmarks met wrong results: see above.\n'
+fi
 printf '\n%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
-[ "${status}" = 0 ] && [ "$passed" -gt 0 ] && [ "$failed" = 0 ]
+[ "$status" = 0 ] && [ "$passed" -gt 0 ] && [ "$failed" = 0 ] && [ "$benchmarks" = 0 ]

@@ -26,7 +26,9 @@ struct LeastSize {
 
 /// A cell and a number for each of its corners, as reciprocals. The ratio of a facet is the least,
 /// over the corners, of tangent plane · reciprocal. The tangent plane of S0 + α · distance at the
-/// cell's centre is a lower bound of it everywhere.
+/// cell's centre is a lower bound of it everywhere, and so is that of a box around the facet: the
+/// larger of their ratios counts. In the whole cell the facet's size is at least its ratio times
+/// what the numbers give by trilinear interpolation.
 struct CellCorners {
   double centre[3];
   float half_edge;
