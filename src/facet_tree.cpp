@@ -22,8 +22,9 @@ constexpr double farthest_for_float = 1e15;
 }  // namespace
 
 FacetTree::FacetTree(SizedFacets facets, int threads) {
-  if (facets.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
-    throw Error("A size function has more than 2 billion facets: split its sources.");
+  // An entry has 24 bits for a node, and there is a node for 56 facets.
+  if (facets.size() > std::size_t{simd::max_nodes} * 48) {
+    throw Error("A size function has more than 800 million facets: split its sources.");
   }
   if (facets.empty()) {
     return;

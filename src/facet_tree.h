@@ -137,8 +137,8 @@ class FacetTree {
   double unit() const { return layout_.unit; }
   const Vec3& centre() const { return layout_.centre; }
   double largest_slope() const { return largest_slope_; }
-  /// Cells may keep entries: there are few enough nodes.
-  bool has_entries() const { return layout_.nodes.size() <= simd::max_nodes; }
+  /// Farther away, float cannot rule anything out, and only `size` and `sizes` may be asked.
+  bool is_near_enough_for_float(const Vec3& p) const;
 
  private:
   struct Search {
@@ -161,7 +161,6 @@ class FacetTree {
   /// Entries of a stack that holds up to seven siblings a level, of eleven levels.
   static constexpr std::size_t stack_size = 96;
 
-  bool is_near_enough_for_float(const Vec3& p) const;
   Box child_box(std::uint32_t node, int lane) const;
   double reference_size(const Vec3& p, double upper_bound) const;
 

@@ -24,9 +24,8 @@ GridBuilder::GridBuilder(BackgroundGrid& grid, const GridOptions& options)
       static_cast<std::size_t>(options.threads > 0 ? options.threads : default_threads()));
 }
 
-CellClassifier& GridBuilder::own_classifier() {
-  std::unique_ptr<CellClassifier>& own =
-      classifiers_.at(static_cast<std::size_t>(omp_get_thread_num()));
+CellClassifier& GridBuilder::own_classifier(int thread) {
+  std::unique_ptr<CellClassifier>& own = classifiers_.at(static_cast<std::size_t>(thread));
   if (!own) {
     own =
         std::make_unique<CellClassifier>(*grid_.tree_, grid_.cube_, grid_.size_limit_, tolerance_,
@@ -43,7 +42,7 @@ void GridBuilder::build() {
       open.size(), options_.threads,
       [&](std::size_t i) {
         roots[i] = build_subtree(open[i].cell, open[i].ruling, *open[i].candidates,
-                                 open[i].is_inside, own_classifier(), parts[i]);
+                                 open[i].is_inside, own_classifier(omp_get_thread_num()), parts[i]);
       },
       [&](std::size_t done) {
         if (options_.progress && done < open.size()) {
@@ -63,15 +62,21 @@ void GridBuilder::build() {
 std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   OpenCell root;
   root.candidates = std::make_shared<CellCandidates>(1, FacetTree::root);
-  root.ruling = own_classifier().smallest(root.cell.centre(grid_.cube_));
-  for (int i = 0; i < 8; ++i) {
-    root.cell.corner_values[i] =
-        own_classifier().smallest(grid_.cube_.at(root.cell.corner(i))).size;
-  }
 
   // Block 0 stands above the root: its first child is the root's own place.
   Nodes& nodes = grid_.nodes_;
   nodes.blocks.emplace_back();
+  for (int i = 0; i < 8; ++i) {
+    if (!grid_.tree_->is_near_enough_for_float(grid_.cube_.at(root.cell.corner(i)))) {
+      set_code(root, BackgroundGrid::code(NodeKind::tree, 0));
+      return {};
+    }
+  }
+  root.ruling = own_classifier(0).smallest(root.cell.centre(grid_.cube_));
+  for (int i = 0; i < 8; ++i) {
+    root.cell.corner_values[i] =
+        own_classifier(0).smallest(grid_.cube_.at(root.cell.corner(i))).size;
+  }
   std::vector<OpenCell> open{root};
   while (!open.empty() && open.size() < open_cells_wanted &&
          open.front().cell.depth < max_grid_depth) {
@@ -83,7 +88,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
     };
     std::vector<Classified> classified(open.size());
     parallel_for(open.size(), options_.threads, [&](std::size_t i) {
-      CellClassifier& own = own_classifier();
+      CellClassifier& own = own_classifier(omp_get_thread_num());
       Classified& result = classified[i];
       if (is_outside(open[i].cell, open[i].is_inside)) {
         result.verdict = Verdict::keep_facets;

@@ -34,7 +34,8 @@ class GridBuilder {
     bool is_inside = false;  ///< all of it is known to be inside the region
   };
 
-  CellClassifier& own_classifier();
+  /// `thread`: its number in the team that works on this grid; who calls may be one of others.
+  CellClassifier& own_classifier(int thread);
   std::vector<OpenCell> build_top();
   NodeCode build_subtree(const GridCell& cell, const FacetTree::Smallest& ruling,
                          const CellCandidates& candidates, bool is_inside,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "facet_block.h"
 #include "oriented_box.h"
 #include "parallel.h"
 
@@ -123,9 +124,6 @@ class TreeBuilder {
   void split(std::uint32_t first, std::uint32_t count, std::uint32_t children,
              std::uint32_t facets_per_child);
   Summary fill_block(std::uint32_t index, std::uint32_t first, std::uint32_t count);
-  /// Returns the normal of a triangle, as long as twice its area; a segment itself.
-  Vec3 fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& facet,
-                 const Vec3& origin) const;
   Vec3 scaled(const Vec3& p) const { return (p - layout_.centre) * scale_; }
 
   SizedFacets& facets_;
@@ -341,7 +339,7 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   std::size_t corner_count = 0;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
     const SizedFacet& facet = facets_[first + lane];
-    const Vec3 area = fill_lane(block, lane, facet, origin);
+    const Vec3 area = set_facet(block, lane, facet, origin, layout_.unit);
     normal += area.dot(normal) < 0.0 ? Vec3(-area) : area;
     areas += area.norm();
     start_size = std::min(start_size, facet.start_size);
@@ -364,51 +362,6 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times.
   block.place_error = static_cast<float>(1e-6 * std::sqrt(reach) + 1e-17);
   return summary;
-}
-
-Vec3 TreeBuilder::fill_lane(FacetBlock& block, std::uint32_t lane, const SizedFacet& sized,
-                            const Vec3& origin) const {
-  const Facet& facet = sized.facet;
-  std::array<Vec3, 3> c;
-  for (int k = 0; k < 3; ++k) {
-    // Corners that the facet does not have repeat its last one.
-    c[k] = (facet.corners[std::min(k, facet.corner_count - 1)] - origin) * scale_;
-  }
-
-  // The longest side first.
-  const double sides[3] = {(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(),
-                           (c[0] - c[2]).squaredNorm()};
-  const auto longest = static_cast<int>(std::max_element(sides, sides + 3) - sides);
-  const Vec3& a = c[longest];
-  const Vec3& b = c[(longest + 1) % 3];
-  const Vec3& third = c[(longest + 2) % 3];
-  const double length = std::sqrt(sides[longest]);
-  Vec3 along = Vec3::UnitX();
-  if (length > 0.0) {
-    along = (b - a) * (1.0 / length);
-  }
-  const double foot = along.dot(third - a);
-  Vec3 across = (third - a) - foot * along;
-  across -= across.dot(along) * along;
-  const double height = across.norm();
-  // Of no height, any direction across will do.
-  if (height > 1e-12 * length) {
-    across /= height;
-  } else {
-    across = along.unitOrthogonal();
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    block.corner[axis][lane] = static_cast<float>(a[axis]);
-    block.along[axis][lane] = static_cast<float>(along[axis]);
-    block.across[axis][lane] = static_cast<float>(across[axis]);
-  }
-  block.length[lane] = static_cast<float>(length);
-  block.foot[lane] = static_cast<float>(std::clamp(foot, 0.0, length));
-  block.height[lane] = height > 1e-12 * length ? static_cast<float>(height) : 0.0f;
-  block.start_size[lane] = static_cast<float>(sized.start_size / layout_.unit);
-  block.slope[lane] = static_cast<float>(sized.slope);
-  const Vec3 side = c[1] - c[0];
-  return facet.corner_count == 2 ? side : Vec3(side.cross(c[2] - c[0]));
 }
 
 }  // namespace

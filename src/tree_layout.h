@@ -19,9 +19,9 @@ struct WideBoxes {
 /// block are adjacent. Every node but those along one edge of the tree has eight children, every
 /// block but the last eight facets.
 struct TreeLayout {
-  Box box;            ///< of all facets, model units
-  Vec3 centre;        ///< origin of the nodes' and blocks' coordinates, model units
-  double unit = 1.0;  ///< of the nodes' and blocks' lengths and sizes, in model units
+  Box box;                     ///< of all facets, model units
+  Vec3 centre = Vec3::Zero();  ///< origin of the nodes' and blocks' coordinates, model units
+  double unit = 1.0;           ///< of the nodes' and blocks' lengths and sizes, in model units
   std::vector<std::uint32_t> order;  ///< original index of each facet
   std::vector<simd::WideNode> nodes;
   std::vector<WideBoxes> boxes;  ///< of each node

@@ -614,6 +614,37 @@ void expect_rises_to_one(const std::vector<double>& fractions) {
   EXPECT_EQ(fractions.back(), 1.0);
 }
 
+TEST(BackgroundGrid, CubeFarLargerThanItsFacetsAnswersExactly) {
+  Case field = sphere(300);
+  field.size_limit = 1e30;
+  field.box = test::cube(1e17);
+  const BackgroundGrid grid = grid_of(field, 0.05);
+  for (const Vec3& p : {Vec3(0.1, 0.2, 0.3), Vec3(5e15, -1e16, 3e16), Vec3(1e3, 1, 1)}) {
+    const double expected = test::brute_force_size(field.facets, p, field.size_limit);
+    EXPECT_NEAR(grid.size(p), expected, 1e-12 * expected);
+  }
+}
+
+TEST(BackgroundGrid, SizesOfManyPointsAreThoseOfEach) {
+  for (const Case& field : {sphere(3000), mixed(300, 1e-2, 21), coincident(), flat_model(22)}) {
+    SCOPED_TRACE(field.name);
+    const BackgroundGrid grid = grid_of(field, 0.05, 1, 16);
+    std::vector<Vec3> points = test_points(grid, 3000, 23);
+    points.push_back(Vec3(1e18, 0, 0));
+    points.push_back(Vec3(-7, 0.1, 0.2));
+    std::vector<double> sizes(points.size());
+    const std::size_t interpolated = grid.sizes(points.data(), points.size(), sizes.data());
+    std::size_t expected = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      bool is_interpolated = false;
+      expect_same_bits(sizes[i], grid.size(points[i], is_interpolated), points[i]);
+      expected += is_interpolated ? 1 : 0;
+    }
+    EXPECT_EQ(interpolated, expected);
+    EXPECT_GT(interpolated, 0u);
+  }
+}
+
 TEST(BackgroundGrid, ProgressRisesToOne) {
   const std::vector<double> fractions = progress_of(sphere(20000), 1);
   expect_rises_to_one(fractions);
