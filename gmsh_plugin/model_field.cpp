@@ -33,15 +33,11 @@ int highest(const std::vector<Entity>& entities) {
 namespace {
 
 /// See FieldOptions::boundary.
-std::vector<std::array<Vec3, 3>> boundary_triangles(const std::vector<Entity>& volumes,
-                                                    const Topology& topology) {
+std::vector<std::array<Vec3, 3>> boundary_triangles(const std::vector<Entity>& volumes) {
   std::vector<std::array<Vec3, 3>> triangles;
   const NodeCoordinates nodes;
   for (const Entity& volume : volumes) {
-    for (const Entity& face : topology.lower(volume)) {
-      if (face.dim != 2) {
-        continue;
-      }
+    for (const Entity& face : gmsh::boundary(volume)) {
       const FacetedSource mesh = read_entity_mesh(face, nodes);
       if (mesh.triangles.empty() && mesh.quads.empty()) {
         return {};
@@ -60,9 +56,7 @@ std::vector<std::array<Vec3, 3>> boundary_triangles(const std::vector<Entity>& v
 
 ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_) {
   model_ = gmsh::current_model();
-  field_.options().boundary = [this](const std::vector<Entity>& volumes) {
-    return boundary_triangles(volumes, field_.topology());
-  };
+  field_.options().boundary = boundary_triangles;
   field_.options().progress = [this](const std::string& what, double done) {
     tell_grid(what, done);
   };

@@ -16,37 +16,37 @@ SizedFacets distance_facets(const std::vector<std::array<Vec3, 3>>& triangles) {
   return facets;
 }
 
-/// Along no axis and no diagonal, so that it hardly ever runs within a face.
-Vec3 direction_of_sight() { return Vec3(0.5128, 0.7013, 0.4951).normalized(); }
-
 }  // namespace
 
-AttachedRegion::AttachedRegion(std::vector<std::array<Vec3, 3>> triangles, int threads)
+AttachedRegion::AttachedRegion(const std::vector<std::array<Vec3, 3>>& triangles, int threads)
     : boundary_(distance_facets(triangles), threads) {}
 
-AttachedRegion::Place AttachedRegion::place(const Vec3& centre, double radius) const {
+bool AttachedRegion::touches(const Vec3& centre, double radius) const {
   // A little more, for the rounding of cells and of distances.
   const double reach = 1.001 * radius;
-  if (boundary_.size(centre, reach) < reach) {
-    return Place::boundary;
-  }
-  return encloses(centre) ? Place::inside : Place::outside;
+  return boundary_.size(centre, reach) < reach;
 }
 
-/// From outside a ray meets boundaries an even number of times. No ray slips between triangles that
-/// share a side (facet.h), but it may meet both of them: so two rays must agree on an even number.
+/// From outside a ray meets boundaries an even number of times.
 bool AttachedRegion::encloses(const Vec3& p) const {
-  for (const Vec3& direction : {direction_of_sight(), Vec3(-direction_of_sight())}) {
-    std::size_t crossings = 0;
-    boundary_.first_hit(p, direction, FacetTree::infinity, [&crossings](std::uint32_t) {
-      ++crossings;
-      return false;  // on to the next
-    });
-    if (crossings % 2 == 1) {
-      return true;
-    }
-  }
-  return false;
+  // Along no axis and no diagonal, so that it hardly ever runs within a face or through an edge.
+  const Vec3 direction = Vec3(0.5128, 0.7013, 0.4951).normalized();
+  return crossings(p, direction, FacetTree::infinity) % 2 == 1;
+}
+
+bool AttachedRegion::separates(const Vec3& p, const Vec3& q) const {
+  const double distance = (q - p).norm();
+  return distance > 0.0 && crossings(p, (q - p) / distance, distance) % 2 == 1;
+}
+
+std::size_t AttachedRegion::crossings(const Vec3& from, const Vec3& direction,
+                                      double within) const {
+  std::size_t count = 0;
+  boundary_.first_hit(from, direction, within, [&](std::uint32_t i) {
+    count += ray_distance(boundary_.facets()[i].facet, from, direction) < within ? 1 : 0;
+    return false;  // on to the next
+  });
+  return count;
 }
 
 }  // namespace meshgrow

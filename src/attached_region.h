@@ -7,23 +7,26 @@ namespace meshgrow {
 
 /// What is inside volumes, by the meshes of their boundaries: sizes are asked for nowhere else.
 ///
-/// Errs towards `boundary` and `inside`. Should a boundary not be closed, some of what is inside is
-/// taken to be outside; who relies on it must then be slower, not wrong.
+/// Should a boundary not be closed, some of what is inside is taken to be outside: who relies on it
+/// must then be slower, not wrong.
 ///
 /// Immutable after construction; every const function may be called from any thread.
 class AttachedRegion {
  public:
-  /// `triangles`: of each volume all boundary faces, those that two volumes share twice. The start
-  /// sizes and slopes do not matter.
-  explicit AttachedRegion(std::vector<std::array<Vec3, 3>> triangles, int threads = 1);
+  /// `triangles`: of each volume all boundary faces, those that two volumes share twice.
+  explicit AttachedRegion(const std::vector<std::array<Vec3, 3>>& triangles, int threads = 1);
 
-  enum class Place { outside, boundary, inside };
+  /// Whether the boundary comes closer than `radius` to the finite point.
+  bool touches(const Vec3& centre, double radius) const;
 
-  /// Where the ball around the finite point is.
-  Place place(const Vec3& centre, double radius) const;
+  /// Whether the point is inside, by what a ray from it meets.
+  bool encloses(const Vec3& p) const;
+
+  /// Whether one of the points is inside and the other is not: much faster than to ask for each.
+  bool separates(const Vec3& p, const Vec3& q) const;
 
  private:
-  bool encloses(const Vec3& p) const;
+  std::size_t crossings(const Vec3& from, const Vec3& direction, double within) const;
 
   FacetTree boundary_;
 };

@@ -41,8 +41,9 @@ void GridBuilder::build() {
   parallel_for(
       open.size(), options_.threads,
       [&](std::size_t i) {
-        roots[i] = build_subtree(open[i].cell, open[i].ruling, *open[i].candidates,
-                                 open[i].is_inside, own_classifier(omp_get_thread_num()), parts[i]);
+        roots[i] =
+            build_subtree(open[i].cell, open[i].ruling, *open[i].candidates, open[i].whereabouts,
+                          own_classifier(omp_get_thread_num()), parts[i]);
       },
       [&](std::size_t done) {
         if (options_.progress && done < open.size()) {
@@ -77,6 +78,9 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
     root.cell.corner_values[i] =
         own_classifier(0).smallest(grid_.cube_.at(root.cell.corner(i))).size;
   }
+  if (options_.region) {
+    root.whereabouts.reference_is_inside = options_.region->encloses(point_of_reference(root.cell));
+  }
   std::vector<OpenCell> open{root};
   while (!open.empty() && open.size() < open_cells_wanted &&
          open.front().cell.depth < max_grid_depth) {
@@ -90,7 +94,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
     parallel_for(open.size(), options_.threads, [&](std::size_t i) {
       CellClassifier& own = own_classifier(omp_get_thread_num());
       Classified& result = classified[i];
-      if (is_outside(open[i].cell, open[i].is_inside)) {
+      if (is_outside(open[i].cell, open[i].whereabouts)) {
         result.verdict = Verdict::keep_facets;
         result.code = BackgroundGrid::code(NodeKind::tree, 0);
         return;
@@ -114,8 +118,9 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       set_code(open[i], BackgroundGrid::code(NodeKind::block, block));
       const auto candidates = std::make_shared<CellCandidates>(result.split.candidates);
       for (int child = 0; child < 8; ++child) {
-        next.push_back({child_cell(open[i].cell, child, result.split.lattice),
-                        result.split.ruling[child], candidates, block, child, open[i].is_inside});
+        const GridCell part = child_cell(open[i].cell, child, result.split.lattice);
+        next.push_back({part, result.split.ruling[child], candidates, block, child,
+                        of_child(open[i].cell, open[i].whereabouts, part)});
       }
     }
     open = std::move(next);
@@ -124,22 +129,38 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
 }
 
 /// Looks only where it is not known yet whether the cell is inside.
-bool GridBuilder::is_outside(const GridCell& cell, bool& is_inside) const {
-  if (!options_.region || is_inside) {
+bool GridBuilder::is_outside(const GridCell& cell, Whereabouts& whereabouts) const {
+  if (!options_.region || whereabouts.is_inside ||
+      options_.region->touches(cell.centre(grid_.cube_),
+                               std::sqrt(3.0) * cell.half_edge(grid_.cube_))) {
     return false;
   }
-  const AttachedRegion::Place place = options_.region->place(
-      cell.centre(grid_.cube_), std::sqrt(3.0) * cell.half_edge(grid_.cube_));
-  is_inside = place == AttachedRegion::Place::inside;
-  return place == AttachedRegion::Place::outside;
+  whereabouts.is_inside = whereabouts.reference_is_inside;
+  return !whereabouts.is_inside;
+}
+
+/// Within the cell, and in no plane in which a boundary is likely to lie.
+Vec3 GridBuilder::point_of_reference(const GridCell& cell) const {
+  return grid_.cube_.at(cell.lowest) + cell.half_edge(grid_.cube_) * Vec3(0.9743, 1.0467, 1.0271);
+}
+
+GridBuilder::Whereabouts GridBuilder::of_child(const GridCell& cell, const Whereabouts& whereabouts,
+                                               const GridCell& child) const {
+  if (!options_.region || whereabouts.is_inside) {
+    return whereabouts;
+  }
+  return {false,
+          whereabouts.reference_is_inside !=
+              options_.region->separates(point_of_reference(cell), point_of_reference(child))};
 }
 
 GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
                                                  const FacetTree::Smallest& ruling,
-                                                 const CellCandidates& candidates, bool is_inside,
+                                                 const CellCandidates& candidates,
+                                                 Whereabouts whereabouts,
                                                  CellClassifier& classifier, Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
-  if (is_outside(cell, is_inside)) {
+  if (is_outside(cell, whereabouts)) {
     return BackgroundGrid::code(NodeKind::tree, 0);
   }
   const Verdict verdict = classifier.classify(cell, ruling, candidates);
@@ -153,8 +174,9 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
   const std::size_t block = nodes.blocks.size();
   nodes.blocks.emplace_back();
   for (int child = 0; child < 8; ++child) {
-    const NodeCode code = build_subtree(child_cell(cell, child, split.lattice), split.ruling[child],
-                                        split.candidates, is_inside, classifier, nodes);
+    const GridCell part = child_cell(cell, child, split.lattice);
+    const NodeCode code = build_subtree(part, split.ruling[child], split.candidates,
+                                        of_child(cell, whereabouts, part), classifier, nodes);
     nodes.blocks[block][child] = code;
   }
   return BackgroundGrid::code(NodeKind::block, block);

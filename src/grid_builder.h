@@ -24,6 +24,12 @@ class GridBuilder {
   using Nodes = BackgroundGrid::Nodes;
   using Verdict = CellClassifier::Verdict;
 
+  /// Where a cell is against the region in which sizes are asked for.
+  struct Whereabouts {
+    bool is_inside = false;            ///< all of it, as was seen before
+    bool reference_is_inside = false;  ///< its point of reference
+  };
+
   /// A cell still to be classified, and the place in `blocks` that waits for its code.
   struct OpenCell {
     GridCell cell;
@@ -31,16 +37,19 @@ class GridBuilder {
     std::shared_ptr<const CellCandidates> candidates;
     std::size_t block = 0;
     int child = 0;
-    bool is_inside = false;  ///< all of it is known to be inside the region
+    Whereabouts whereabouts;
   };
 
   /// `thread`: its number in the team that works on this grid; who calls may be one of others.
   CellClassifier& own_classifier(int thread);
   std::vector<OpenCell> build_top();
   NodeCode build_subtree(const GridCell& cell, const FacetTree::Smallest& ruling,
-                         const CellCandidates& candidates, bool is_inside,
+                         const CellCandidates& candidates, Whereabouts whereabouts,
                          CellClassifier& classifier, Nodes& nodes) const;
-  bool is_outside(const GridCell& cell, bool& is_inside) const;
+  bool is_outside(const GridCell& cell, Whereabouts& whereabouts) const;
+  Vec3 point_of_reference(const GridCell& cell) const;
+  Whereabouts of_child(const GridCell& cell, const Whereabouts& whereabouts,
+                       const GridCell& child) const;
   static NodeCode append_leaf(Verdict verdict, const GridCell& cell,
                               const CellClassifier& classifier, Nodes& nodes);
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);

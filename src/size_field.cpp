@@ -257,12 +257,11 @@ std::shared_ptr<const AttachedRegion> SizeField::region_of(const Group& group) c
   if (!options_.boundary || volumes.empty()) {
     return nullptr;
   }
-  std::vector<std::array<Vec3, 3>> triangles = options_.boundary(volumes);
+  const std::vector<std::array<Vec3, 3>> triangles = options_.boundary(volumes);
   if (triangles.empty()) {
     return nullptr;
   }
-  const int threads = threads_for(triangles.size());
-  return std::make_shared<AttachedRegion>(std::move(triangles), threads);
+  return std::make_shared<AttachedRegion>(triangles, threads_for(triangles.size()));
 }
 
 void SizeField::build_grid(std::size_t index, Group& group) const {

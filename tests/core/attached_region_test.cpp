@@ -34,27 +34,33 @@ TEST(AttachedRegion, TellsInsideFromOutside) {
   const AttachedRegion region(shell(0.5, 1.0));
   constexpr unsigned seed = 1;
   Random random(seed);
-  int places[3] = {0, 0, 0};
-  for (int i = 0; i < 20000; ++i) {
+  // The spheres are polyhedra: within 0.02 of the round ones.
+  const auto from_round = [](const Vec3& p) {
+    return std::min(std::abs(p.norm() - 0.5), std::abs(p.norm() - 1.0));
+  };
+  const auto is_inside = [](const Vec3& p) { return p.norm() > 0.5 && p.norm() < 1.0; };
+  int enclosed = 0;
+  int separated = 0;
+  for (int i = 0; i < 5000; ++i) {
     const Vec3 p = test::random_in_box(random, test::cube(1.3));
+    const Vec3 q = test::random_in_box(random, test::cube(1.3));
     const double radius = test::log_uniform(random, 1e-3, 0.3);
-    const double r = p.norm();
-    const AttachedRegion::Place place = region.place(p, radius);
-    ++places[static_cast<int>(place)];
-    // The spheres are polyhedra: within 0.02 of the round ones.
-    const bool crosses_round = std::min(std::abs(r - 0.5), std::abs(r - 1.0)) < radius - 0.02;
-    const bool far_from_round = std::min(std::abs(r - 0.5), std::abs(r - 1.0)) > radius + 0.03;
-    if (crosses_round) {
-      ASSERT_EQ(place, AttachedRegion::Place::boundary) << "seed " << seed << " at " << p;
-    } else if (far_from_round) {
-      ASSERT_EQ(place,
-                r > 0.5 && r < 1.0 ? AttachedRegion::Place::inside : AttachedRegion::Place::outside)
-          << "seed " << seed << " at " << p.transpose();
+    if (from_round(p) < radius - 0.02) {
+      ASSERT_TRUE(region.touches(p, radius)) << "seed " << seed << " at " << p.transpose();
+    } else if (from_round(p) > radius + 0.03) {
+      ASSERT_FALSE(region.touches(p, radius)) << "seed " << seed << " at " << p.transpose();
+    }
+    if (from_round(p) > 0.02 && from_round(q) > 0.02) {
+      ASSERT_EQ(region.encloses(p), is_inside(p)) << "seed " << seed << " at " << p.transpose();
+      ASSERT_EQ(region.separates(p, q), is_inside(p) != is_inside(q))
+          << "seed " << seed << " from " << p.transpose() << " to " << q.transpose();
+      enclosed += is_inside(p) ? 1 : 0;
+      separated += is_inside(p) != is_inside(q) ? 1 : 0;
     }
   }
-  for (const int count : places) {
-    EXPECT_GT(count, 500);
-  }
+  EXPECT_GT(enclosed, 500);
+  EXPECT_GT(separated, 500);
+  EXPECT_FALSE(region.separates(Vec3(1, 1, 1), Vec3(1, 1, 1)));
 }
 
 TEST(AttachedRegion, NeighboursAreOneRegion) {
@@ -73,11 +79,12 @@ TEST(AttachedRegion, NeighboursAreOneRegion) {
     }
   }
   const AttachedRegion region(triangles);
-  EXPECT_EQ(region.place({0.45, 0.55, 0.5}, 0.1), AttachedRegion::Place::inside);
-  EXPECT_EQ(region.place({1.45, 0.55, 0.5}, 0.1), AttachedRegion::Place::inside);
-  EXPECT_EQ(region.place({1.0, 0.5, 0.5}, 0.1), AttachedRegion::Place::boundary);
-  EXPECT_EQ(region.place({2.45, 0.55, 0.5}, 0.1), AttachedRegion::Place::outside);
-  EXPECT_EQ(region.place({-0.45, 0.55, 0.5}, 0.1), AttachedRegion::Place::outside);
+  EXPECT_TRUE(region.encloses({0.45, 0.55, 0.5}));
+  EXPECT_TRUE(region.encloses({1.45, 0.55, 0.5}));
+  EXPECT_FALSE(region.separates({0.45, 0.55, 0.5}, {1.45, 0.52, 0.51}));
+  EXPECT_FALSE(region.encloses({2.45, 0.55, 0.5}));
+  EXPECT_FALSE(region.encloses({-0.45, 0.55, 0.5}));
+  EXPECT_TRUE(region.separates({0.45, 0.55, 0.5}, {-0.45, 0.52, 0.51}));
 }
 
 TEST(AttachedRegion, GridsAreNotRefinedOutsideAndAnswerAsBefore) {
