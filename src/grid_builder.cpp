@@ -18,6 +18,18 @@ constexpr double rounding_reserve = 1e-5;
 
 }  // namespace
 
+namespace {
+
+std::array<GridCell, 8> children_of(const GridCell& cell, const Lattice& lattice) {
+  std::array<GridCell, 8> children;
+  for (int child = 0; child < 8; ++child) {
+    children[child] = child_cell(cell, child, lattice);
+  }
+  return children;
+}
+
+}  // namespace
+
 GridBuilder::GridBuilder(BackgroundGrid& grid, const GridOptions& options)
     : grid_(grid), options_(options), tolerance_(options.tolerance - rounding_reserve) {
   classifiers_.resize(
@@ -78,9 +90,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
     root.cell.corner_values[i] =
         own_classifier(0).smallest(grid_.cube_.at(root.cell.corner(i))).size;
   }
-  if (options_.region) {
-    root.whereabouts.reference_is_inside = options_.region->encloses(point_of_reference(root.cell));
-  }
+  root.whereabouts = of_root(root.cell);
   std::vector<OpenCell> open{root};
   while (!open.empty() && open.size() < open_cells_wanted &&
          open.front().cell.depth < max_grid_depth) {
@@ -89,12 +99,14 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       Nodes leaf;  ///< that one only
       NodeCode code;
       CellClassifier::Split split;
+      std::array<GridCell, 8> children;
+      std::array<Whereabouts, 8> places;
     };
     std::vector<Classified> classified(open.size());
     parallel_for(open.size(), options_.threads, [&](std::size_t i) {
       CellClassifier& own = own_classifier(omp_get_thread_num());
       Classified& result = classified[i];
-      if (is_outside(open[i].cell, open[i].whereabouts)) {
+      if (open[i].whereabouts.place == Whereabouts::Place::outside) {
         result.verdict = Verdict::keep_facets;
         result.code = BackgroundGrid::code(NodeKind::tree, 0);
         return;
@@ -102,6 +114,8 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       result.verdict = own.classify(open[i].cell, open[i].ruling, *open[i].candidates);
       if (result.verdict == Verdict::split) {
         result.split = own.split(open[i].cell);
+        result.children = children_of(open[i].cell, result.split.lattice);
+        result.places = of_children(result.children, open[i].whereabouts);
       } else {
         result.code = append_leaf(result.verdict, open[i].cell, own, result.leaf);
       }
@@ -118,9 +132,8 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       set_code(open[i], BackgroundGrid::code(NodeKind::block, block));
       const auto candidates = std::make_shared<CellCandidates>(result.split.candidates);
       for (int child = 0; child < 8; ++child) {
-        const GridCell part = child_cell(open[i].cell, child, result.split.lattice);
-        next.push_back({part, result.split.ruling[child], candidates, block, child,
-                        of_child(open[i].cell, open[i].whereabouts, part)});
+        next.push_back({result.children[child], result.split.ruling[child], candidates, block,
+                        child, result.places[child]});
       }
     }
     open = std::move(next);
@@ -128,30 +141,64 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   return open;
 }
 
-/// Looks only where it is not known yet whether the cell is inside.
-bool GridBuilder::is_outside(const GridCell& cell, Whereabouts& whereabouts) const {
-  if (!options_.region || whereabouts.is_inside ||
-      options_.region->touches(cell.centre(grid_.cube_),
-                               std::sqrt(3.0) * cell.half_edge(grid_.cube_))) {
-    return false;
-  }
-  whereabouts.is_inside = whereabouts.reference_is_inside;
-  return !whereabouts.is_inside;
-}
-
 /// Within the cell, and in no plane in which a boundary is likely to lie.
 Vec3 GridBuilder::point_of_reference(const GridCell& cell) const {
   return grid_.cube_.at(cell.lowest) + cell.half_edge(grid_.cube_) * Vec3(0.9743, 1.0467, 1.0271);
 }
 
-GridBuilder::Whereabouts GridBuilder::of_child(const GridCell& cell, const Whereabouts& whereabouts,
-                                               const GridCell& child) const {
-  if (!options_.region || whereabouts.is_inside) {
-    return whereabouts;
+GridBuilder::Whereabouts GridBuilder::of_root(const GridCell& root) const {
+  if (!options_.region) {
+    return {};
   }
-  return {false,
-          whereabouts.reference_is_inside !=
-              options_.region->separates(point_of_reference(cell), point_of_reference(child))};
+  const Vec3 point = point_of_reference(root);
+  return {Whereabouts::Place::boundary, point, options_.region->encloses(point)};
+}
+
+/// Cells that the boundary does not touch are inside or outside as a whole, and so are neighbours
+/// of them: one point tells for all.
+std::array<GridBuilder::Whereabouts, 8> GridBuilder::of_children(
+    const std::array<GridCell, 8>& children, const Whereabouts& parent) const {
+  std::array<Whereabouts, 8> result;
+  result.fill(parent);
+  if (parent.place != Whereabouts::Place::boundary) {
+    return result;
+  }
+  unsigned untouched = 0;
+  for (int i = 0; i < 8; ++i) {
+    const double radius = std::sqrt(3.0) * children[i].half_edge(grid_.cube_);
+    untouched |= options_.region->touches(children[i].centre(grid_.cube_), radius) ? 0u : 1u << i;
+  }
+  Whereabouts nearest = parent;
+  for (unsigned open = untouched; open != 0;) {
+    int first = 0;
+    while ((open >> first & 1) == 0) {
+      ++first;
+    }
+    nearest.known_point = point_of_reference(children[first]);
+    nearest.known_is_inside = parent.known_is_inside !=
+                              options_.region->separates(parent.known_point, nearest.known_point);
+    // Neighbours differ in one bit.
+    unsigned connected = 1u << first;
+    for (int step = 0; step < 7; ++step) {
+      for (int i = 0; i < 8; ++i) {
+        if (connected >> i & 1) {
+          connected |= (1u << (i ^ 1) | 1u << (i ^ 2) | 1u << (i ^ 4)) & open;
+        }
+      }
+    }
+    for (int i = 0; i < 8; ++i) {
+      if (connected >> i & 1) {
+        result[i].place =
+            nearest.known_is_inside ? Whereabouts::Place::inside : Whereabouts::Place::outside;
+      }
+    }
+    open &= ~connected;
+  }
+  for (Whereabouts& child : result) {
+    child.known_point = nearest.known_point;
+    child.known_is_inside = nearest.known_is_inside;
+  }
+  return result;
 }
 
 GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
@@ -160,7 +207,7 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
                                                  Whereabouts whereabouts,
                                                  CellClassifier& classifier, Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
-  if (is_outside(cell, whereabouts)) {
+  if (whereabouts.place == Whereabouts::Place::outside) {
     return BackgroundGrid::code(NodeKind::tree, 0);
   }
   const Verdict verdict = classifier.classify(cell, ruling, candidates);
@@ -173,10 +220,11 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
   const CellClassifier::Split split = classifier.split(cell);
   const std::size_t block = nodes.blocks.size();
   nodes.blocks.emplace_back();
+  const std::array<GridCell, 8> children = children_of(cell, split.lattice);
+  const std::array<Whereabouts, 8> places = of_children(children, whereabouts);
   for (int child = 0; child < 8; ++child) {
-    const GridCell part = child_cell(cell, child, split.lattice);
-    const NodeCode code = build_subtree(part, split.ruling[child], split.candidates,
-                                        of_child(cell, whereabouts, part), classifier, nodes);
+    const NodeCode code = build_subtree(children[child], split.ruling[child], split.candidates,
+                                        places[child], classifier, nodes);
     nodes.blocks[block][child] = code;
   }
   return BackgroundGrid::code(NodeKind::block, block);

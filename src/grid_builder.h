@@ -1,6 +1,7 @@
 #ifndef MESHGROW_GRID_BUILDER_H
 #define MESHGROW_GRID_BUILDER_H
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -26,8 +27,11 @@ class GridBuilder {
 
   /// Where a cell is against the region in which sizes are asked for.
   struct Whereabouts {
-    bool is_inside = false;            ///< all of it, as was seen before
-    bool reference_is_inside = false;  ///< its point of reference
+    enum class Place { boundary, inside, outside };
+    Place place = Place::inside;
+    /// For what is on the boundary: a point nearby, and whether it is inside.
+    Vec3 known_point = Vec3::Zero();
+    bool known_is_inside = true;
   };
 
   /// A cell still to be classified, and the place in `blocks` that waits for its code.
@@ -46,10 +50,10 @@ class GridBuilder {
   NodeCode build_subtree(const GridCell& cell, const FacetTree::Smallest& ruling,
                          const CellCandidates& candidates, Whereabouts whereabouts,
                          CellClassifier& classifier, Nodes& nodes) const;
-  bool is_outside(const GridCell& cell, Whereabouts& whereabouts) const;
+  Whereabouts of_root(const GridCell& root) const;
+  std::array<Whereabouts, 8> of_children(const std::array<GridCell, 8>& children,
+                                         const Whereabouts& parent) const;
   Vec3 point_of_reference(const GridCell& cell) const;
-  Whereabouts of_child(const GridCell& cell, const Whereabouts& whereabouts,
-                       const GridCell& child) const;
   static NodeCode append_leaf(Verdict verdict, const GridCell& cell,
                               const CellClassifier& classifier, Nodes& nodes);
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);
