@@ -17,6 +17,10 @@ constexpr double open_edges = 1.0;
 /// Of what a cell hands its children; if there are more, it hands on what it has itself.
 constexpr int max_entries = 2048;
 
+/// Below this depth exact leaves may keep more and more facets: hundreds in the same place would
+/// ask for cells beyond number.
+constexpr int deep = 10;
+
 /// Of an exact leaf.
 constexpr int max_leaf_entries = 32;
 
@@ -64,7 +68,7 @@ CellClassifier::Verdict CellClassifier::classify(const GridCell& cell,
   if (never_too_coarse(cell) && not_much_too_fine(cell)) {
     return Verdict::interpolate;
   }
-  return few_facets_suffice() ? Verdict::keep_facets : Verdict::split;
+  return few_facets_suffice(cell) ? Verdict::keep_facets : Verdict::split;
 }
 
 FacetTree::Smallest CellClassifier::smallest(const Vec3& p) const {
@@ -152,7 +156,7 @@ double CellClassifier::ruling_size(const LatticePlace& place) const {
   return known_at(cube_.at(place)).size;
 }
 
-bool CellClassifier::few_facets_suffice() {
+bool CellClassifier::few_facets_suffice(const GridCell& cell) {
   leaf_entries_.clear();
   if (facets_per_exact_leaf_ == 0) {
     return false;
@@ -169,7 +173,8 @@ bool CellClassifier::few_facets_suffice() {
   query.largest = static_cast<float>(largest * (1.0 + rounding));
   query.open_edge = 0.0f;
   query.open_blocks = true;
-  query.most_facets = static_cast<std::uint32_t>(facets_per_exact_leaf_);
+  query.most_facets = static_cast<std::uint32_t>(facets_per_exact_leaf_)
+                      << std::clamp(cell.depth - deep, 0, 8);
   query.entries = leaf_entries_.data();
   query.capacity = max_leaf_entries;
   const CellCandidates& entries = *candidates_;

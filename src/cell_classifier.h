@@ -71,7 +71,7 @@ class CellClassifier {
   bool bounded_by_lipschitz(const GridCell& cell) const;
   bool never_too_coarse(const GridCell& cell);
   bool not_much_too_fine(const GridCell& cell);
-  bool few_facets_suffice();
+  bool few_facets_suffice(const GridCell& cell);
   void find_ruling_entries(const GridCell& cell);
 
   const FacetTree& tree_;

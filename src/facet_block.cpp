@@ -46,7 +46,8 @@ Vec3 set_facet(simd::FacetBlock& block, std::uint32_t lane, const SizedFacet& si
   block.length[lane] = static_cast<float>(length);
   block.foot[lane] = static_cast<float>(std::clamp(foot, 0.0, length));
   block.height[lane] = height > 1e-12 * length ? static_cast<float>(height) : 0.0f;
-  block.start_size[lane] = static_cast<float>(sized.start_size / unit);
+  block.start_size[lane] =
+      static_cast<float>(std::min(sized.start_size / unit, largest_start_size));
   block.slope[lane] = static_cast<float>(sized.slope);
   const Vec3 side = c[1] - c[0];
   return facet.corner_count == 2 ? side : Vec3(side.cross(c[2] - c[0]));

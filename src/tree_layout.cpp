@@ -144,23 +144,23 @@ void TreeBuilder::find_frame() {
   const std::size_t chunk = 1 << 16;
   const std::size_t chunks = (count + chunk - 1) / chunk;
   std::vector<Box> boxes(chunks);
-  std::vector<double> largest(chunks, 0.0);
+  std::vector<double> smallest(chunks, infinity);
   parallel_for(chunks, threads_, [&](std::size_t c) {
     for (std::size_t i = c * chunk; i < std::min(count, (c + 1) * chunk); ++i) {
       const SizedFacet& facet = facets_[i];
       for (int k = 0; k < facet.facet.corner_count; ++k) {
         boxes[c].extend(facet.facet.corners[k]);
       }
-      largest[c] = std::max(largest[c], facet.start_size);
+      smallest[c] = std::min(smallest[c], facet.start_size);
     }
   });
-  double largest_size = 0.0;
+  double smallest_size = infinity;
   for (std::size_t c = 0; c < chunks; ++c) {
     layout_.box.extend(boxes[c]);
-    largest_size = std::max(largest_size, largest[c]);
+    smallest_size = std::min(smallest_size, smallest[c]);
   }
   layout_.centre = layout_.box.center();
-  layout_.unit = std::max(layout_.box.sizes().maxCoeff(), 1e-6 * largest_size);
+  layout_.unit = std::max(layout_.box.sizes().maxCoeff(), 1e-6 * smallest_size);
   if (!(layout_.unit > 0.0)) {
     layout_.unit = 1.0;  // one point of no size
   }
@@ -352,7 +352,7 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
       corners[corner_count++] = corner;
     }
   }
-  summary.start_size = rounded_down(start_size / layout_.unit);
+  summary.start_size = rounded_down(std::min(start_size / layout_.unit, largest_start_size));
   summary.slope = rounded_down(slope);
   // Boxes lie across the normal of a piece of a surface, whose facets may be turned either way, and
   // along a piece of a curve. Corners have neither.

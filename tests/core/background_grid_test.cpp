@@ -625,6 +625,18 @@ TEST(BackgroundGrid, CubeFarLargerThanItsFacetsAnswersExactly) {
   }
 }
 
+TEST(BackgroundGrid, ManySmallFacetsInOnePlaceDoNotMakeCellsBeyondNumber) {
+  SizedFacets facets;
+  for (int i = 0; i < 500; ++i) {
+    facets.push_back(
+        {Facet::triangle({0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0.1}), 1e-6, 0.1 + 0.001 * (i % 100)});
+  }
+  const Case field{"one place", facets, 1.0};
+  const BackgroundGrid grid = grid_of(field, 0.05);
+  EXPECT_LT(grid.statistics().bytes, 300u << 20);
+  expect_promises_kept(grid, 0.05, 2000, 31);
+}
+
 TEST(BackgroundGrid, SizesOfManyPointsAreThoseOfEach) {
   for (const Case& field : {sphere(3000), mixed(300, 1e-2, 21), coincident(), flat_model(22)}) {
     SCOPED_TRACE(field.name);

@@ -274,6 +274,32 @@ TEST(FacetTree, SizeEqualsBruteForceForAnyNumberOfFacets) {
   }
 }
 
+TEST(FacetTree, StartSizesBeyondAllMeasureLeaveTheOthersAsTheyAre) {
+  // A limit of 1e22, as Gmsh has it, is the start size of whatever is flat.
+  for (const double huge : {1e12, 1e22, 1e60, 1e300}) {
+    constexpr unsigned seed = 620;
+    Random random(seed);
+    RandomFacets wanted;
+    wanted.count = 300;
+    SizedFacets facets = test::random_facets(random, wanted);
+    for (std::size_t i = 0; i < facets.size(); i += 3) {
+      facets[i].start_size = huge;
+    }
+    const FacetTree tree(facets);
+    EXPECT_LT(tree.unit(), 10.0);
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 p = test::random_query(random, facets, wanted.box);
+      const double expected = test::brute_force_size(facets, p);
+      ASSERT_NEAR(tree.size(p), expected, 1e-12 * expected) << query_text(seed, i, p);
+    }
+    for (SizedFacet& facet : facets) {
+      facet.start_size = huge;
+    }
+    const Vec3 p(0.1, 0.2, 0.3);
+    ASSERT_NEAR(FacetTree(facets).size(p), test::brute_force_size(facets, p), 1e-12 * huge);
+  }
+}
+
 TEST(FacetTree, SmallFacetFurtherAwayRulesOverTheNearest) {
   const double slope = 0.2;
   const SizedFacets facets = {{Facet::segment({1, -1, 0}, {1, 1, 0}), 1.0, slope},
