@@ -23,7 +23,10 @@ Vec3 set_facet(simd::FacetBlock& block, std::uint32_t lane, const SizedFacet& si
   const Vec3& a = c[longest];
   const Vec3& b = c[(longest + 1) % 3];
   const Vec3& third = c[(longest + 2) % 3];
-  const double length = std::sqrt(sides[longest]);
+  // What is shorter is a point: its square has no digits left.
+  constexpr double shortest_length = 1e-100;
+  const double length =
+      sides[longest] > shortest_length * shortest_length ? std::sqrt(sides[longest]) : 0.0;
   Vec3 along = Vec3::UnitX();
   if (length > 0.0) {
     along = (b - a) * (1.0 / length);
@@ -33,7 +36,8 @@ Vec3 set_facet(simd::FacetBlock& block, std::uint32_t lane, const SizedFacet& si
   across -= across.dot(along) * along;
   const double height = across.norm();
   // Of no height, any direction across will do.
-  if (height > 1e-12 * length) {
+  const bool has_height = length > 0.0 && height > 1e-12 * length;
+  if (has_height) {
     across /= height;
   } else {
     across = along.unitOrthogonal();
@@ -45,7 +49,7 @@ Vec3 set_facet(simd::FacetBlock& block, std::uint32_t lane, const SizedFacet& si
   }
   block.length[lane] = static_cast<float>(length);
   block.foot[lane] = static_cast<float>(std::clamp(foot, 0.0, length));
-  block.height[lane] = height > 1e-12 * length ? static_cast<float>(height) : 0.0f;
+  block.height[lane] = has_height ? static_cast<float>(height) : 0.0f;
   block.start_size[lane] =
       static_cast<float>(std::min(sized.start_size / unit, largest_start_size));
   block.slope[lane] = static_cast<float>(sized.slope);

@@ -188,7 +188,7 @@ FacetTree::Closest FacetTree::closest_facet(const Vec3& p) const {
 
 std::size_t FacetTree::memory_bytes() const {
   return facets_.capacity() * sizeof(SizedFacet) +
-         layout_.order.capacity() * sizeof(layout_.order[0]) +
+         (layout_.order.capacity() + layout_.block_entries.capacity()) * sizeof(std::uint32_t) +
          layout_.nodes.capacity() * (sizeof(simd::WideNode) + sizeof(WideBoxes) + sizeof(float)) +
          layout_.blocks.capacity() * sizeof(simd::FacetBlock);
 }

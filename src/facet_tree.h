@@ -54,8 +54,8 @@ class FacetTree {
   /// the search begins, and what is answered otherwise.
   Smallest smallest(const Vec3& p, const Entries& entries, const Smallest& known) const;
 
-  /// The same size to 1e-5, from above, in less time: where float is good enough for that, it is
-  /// not asked for more. `upper_bound` where nothing is below it.
+  /// The same size to 1e-5, from above but for its last digits, in less time: where float is good
+  /// enough for that, it is not asked for more. `upper_bound` where nothing is below it.
   double fast_size(const Vec3& p, const Entries& entries, double upper_bound) const;
 
   /// The same for several points; entries(i) are those for point i.

@@ -14,7 +14,11 @@ namespace {
 constexpr std::size_t open_cells_wanted = 512;
 
 /// Taken off the tolerance: rounding of corner values, and of what is proven about them, to float.
-constexpr double rounding_reserve = 1e-5;
+/// Relative to 1 + t.
+constexpr double rounding_reserve = 1.2e-5;
+
+/// Sizes that float holds with all its digits.
+bool fits_float(double size) { return size > 1e-37 && size < 1e37; }
 
 }  // namespace
 
@@ -31,7 +35,9 @@ std::array<GridCell, 8> children_of(const GridCell& cell, const Lattice& lattice
 }  // namespace
 
 GridBuilder::GridBuilder(BackgroundGrid& grid, const GridOptions& options)
-    : grid_(grid), options_(options), tolerance_(options.tolerance - rounding_reserve) {
+    : grid_(grid),
+      options_(options),
+      tolerance_(options.tolerance - rounding_reserve * (1.0 + options.tolerance)) {
   classifiers_.resize(
       static_cast<std::size_t>(options.threads > 0 ? options.threads : default_threads()));
 }
@@ -234,6 +240,9 @@ GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& 
                                                const CellClassifier& classifier, Nodes& nodes) {
   nodes.depth = std::max(nodes.depth, cell.depth);
   if (verdict == Verdict::interpolate) {
+    if (!std::all_of(cell.corner_values.begin(), cell.corner_values.end(), fits_float)) {
+      return BackgroundGrid::code(NodeKind::tree, 0);
+    }
     BackgroundGrid::CornerValues values;
     std::transform(cell.corner_values.begin(), cell.corner_values.end(), values.begin(),
                    [&](double value) { return static_cast<float>(value * classifier.scale()); });

@@ -356,7 +356,7 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   summary.slope = rounded_down(slope);
   // Boxes lie across the normal of a piece of a surface, whose facets may be turned either way, and
   // along a piece of a curve. Corners have neither.
-  summary.oriented = normal.squaredNorm() > 0.9 * areas * areas
+  summary.oriented = areas > 1e-100 && normal.squaredNorm() > 0.9 * areas * areas
                          ? oriented_box(corners.data(), corner_count, normal, summary.box)
                          : oriented_box(corners.data(), corner_count, summary.spread, summary.box);
   // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times.

@@ -637,6 +637,18 @@ TEST(BackgroundGrid, ManySmallFacetsInOnePlaceDoNotMakeCellsBeyondNumber) {
   expect_promises_kept(grid, 0.05, 2000, 31);
 }
 
+TEST(BackgroundGrid, SizesBeyondFloatAreAnsweredExactly) {
+  for (const double scale : {1e-46, 1e-44, 1e39}) {
+    const Case field{"scale", {{Facet::point({0, 0, 0}), scale, 0.03}}, 1e300, test::cube(scale)};
+    const BackgroundGrid grid = grid_of(field, 0.05, 1, 0);
+    const Vec3 p = scale * Vec3(0.3, 0.31, 0.32);
+    const double expected = test::brute_force_size(field.facets, p, field.size_limit);
+    EXPECT_NEAR(grid.size(p), expected, 0.05 * expected) << scale;
+  }
+  const BackgroundGrid empty(tree_of({}), FacetTree::infinity, test::cube(1.0));
+  EXPECT_EQ(empty.size({0.1, 0.2, 0.3}), FacetTree::infinity);
+}
+
 TEST(BackgroundGrid, SizesOfManyPointsAreThoseOfEach) {
   for (const Case& field : {sphere(3000), mixed(300, 1e-2, 21), coincident(), flat_model(22)}) {
     SCOPED_TRACE(field.name);

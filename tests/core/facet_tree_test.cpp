@@ -300,6 +300,26 @@ TEST(FacetTree, StartSizesBeyondAllMeasureLeaveTheOthersAsTheyAre) {
   }
 }
 
+TEST(FacetTree, FacetsAsShortAsNothingArePoints) {
+  for (const double length : {1e-80, 1e-100, 1e-155, 1e-161, 1e-163}) {
+    constexpr unsigned seed = 630;
+    Random random(seed);
+    SizedFacets facets;
+    for (int i = 0; i < 64; ++i) {
+      const Vec3 far = Vec3(1, 0, 0) + 0.3 * test::random_direction(random);
+      const Vec3 b = length * test::random_direction(random);
+      facets.push_back({i % 2 == 0 ? Facet::point(far) : Facet::segment({0, 0, 0}, b),
+                        i % 2 == 0 ? 3e-2 : 1e-3, 0.3});
+    }
+    const FacetTree tree(facets);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 p = test::random_in_box(random, test::cube(1.0));
+      const double expected = test::brute_force_size(facets, p);
+      ASSERT_NEAR(tree.size(p), expected, 1e-12 * expected) << query_text(seed, i, p);
+    }
+  }
+}
+
 TEST(FacetTree, SmallFacetFurtherAwayRulesOverTheNearest) {
   const double slope = 0.2;
   const SizedFacets facets = {{Facet::segment({1, -1, 0}, {1, 1, 0}), 1.0, slope},
