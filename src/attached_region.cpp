@@ -42,10 +42,14 @@ bool AttachedRegion::separates(const Vec3& p, const Vec3& q) const {
 std::size_t AttachedRegion::crossings(const Vec3& from, const Vec3& direction,
                                       double within) const {
   std::size_t count = 0;
-  boundary_.first_hit(from, direction, within, [&](std::uint32_t i) {
-    count += ray_distance(boundary_.facets()[i].facet, from, direction) < within ? 1 : 0;
-    return false;  // on to the next
-  });
+  const Vec3 inverse = direction.cwiseInverse();
+  boundary_.closest_facet(
+      within,
+      [&](std::size_t, const Box& box) { return FacetTree::ray_enters(box, from, inverse); },
+      [&](std::uint32_t i) {
+        count += ray_distance(boundary_.facets()[i].facet, from, direction) < within ? 1 : 0;
+        return FacetTree::infinity;  // on to the next
+      });
   return count;
 }
 

@@ -167,7 +167,7 @@ std::size_t BackgroundGrid::sizes(const Vec3* points, std::size_t count, double*
   std::array<std::size_t, group> open;
   std::array<std::size_t, group> exact_spots;
   std::array<Vec3, group> exact_points;
-  std::array<double, group> exact_sizes;
+  std::array<FacetTree::Smallest, group> found;
   for (std::size_t first = 0; first < count; first += group) {
     const std::size_t in_group = std::min(group, count - first);
     std::size_t open_count = 0;
@@ -209,14 +209,14 @@ std::size_t BackgroundGrid::sizes(const Vec3* points, std::size_t count, double*
         continue;
       }
       exact_spots[exact_count] = i;
-      exact_points[exact_count++] = points[first + i];
+      exact_points[exact_count] = points[first + i];
+      found[exact_count++] = {size_limit_, FacetTree::Smallest::no_facet};
     }
-    tree_->fast_sizes(
+    tree_->fast_smallest(
         exact_points.data(), exact_count,
-        [&](std::size_t k) { return exact_entries(spots[exact_spots[k]].node); }, size_limit_,
-        exact_sizes.data());
+        [&](std::size_t k) { return exact_entries(spots[exact_spots[k]].node); }, found.data());
     for (std::size_t k = 0; k < exact_count; ++k) {
-      sizes[first + exact_spots[k]] = exact_sizes[k];
+      sizes[first + exact_spots[k]] = found[k].size;
     }
   }
   return interpolated;

@@ -29,15 +29,12 @@ constexpr int known_sizes_shift = 64 - 14;
 
 constexpr int lattice_centre = 13;
 
-bool is_between_corners(int i) { return i % 3 == 1 || i / 3 % 3 == 1 || i / 9 == 1; }
+/// Places of a lattice that are neither its centre nor a corner of the cell.
+constexpr std::array<int, 18> between_corners = {1,  3,  4,  5,  7,  9,  10, 11, 12,
+                                                 14, 15, 16, 17, 19, 21, 22, 23, 25};
 
 float as_reciprocal(double size) {
   return static_cast<float>(std::min(1.0 / size, static_cast<double>(FLT_MAX)));
-}
-
-const simd::TreeKernels& kernels() {
-  static const simd::TreeKernels& chosen = simd::tree_kernels();
-  return chosen;
 }
 
 }  // namespace
@@ -101,7 +98,8 @@ bool CellClassifier::never_too_coarse(const GridCell& cell) {
   query.ratio = static_cast<float>(kept);
   query.enough = static_cast<float>(kept * kept);
   const CellCandidates& entries = *candidates_;
-  kernels().least_ratio(tree_.view(), entries.data(), static_cast<int>(entries.size()), query);
+  simd::tree_kernels().least_ratio(tree_.view(), entries.data(), static_cast<int>(entries.size()),
+                                   query);
   if (query.ratio < static_cast<float>(kept)) {
     scale_ = query.ratio * (1.0 + tolerance_) * (1.0 - rounding);
   }
@@ -126,11 +124,10 @@ bool CellClassifier::not_much_too_fine(const GridCell& cell) {
     return false;
   }
   // What the facet that rules at the centre allows is allowed all the more by the field.
-  std::array<int, 27> doubtful;
+  std::array<int, between_corners.size()> doubtful;
   int doubtful_count = 0;
-  for (int i = 0; i < 27; ++i) {
-    if (is_between_corners(i) && i != lattice_centre &&
-        !fine_enough(ruling_size(lattice_place(cell, i)), i)) {
+  for (const int i : between_corners) {
+    if (!fine_enough(ruling_size(lattice_place(cell, i)), i)) {
       doubtful[doubtful_count++] = i;
     }
   }
@@ -145,8 +142,9 @@ void CellClassifier::find_ruling_corners() {
     return;
   }
   alignas(32) std::array<float, 8> sizes;
-  kernels().corner_sizes(tree_.view().blocks[ruling_.facet / simd::lanes],
-                         static_cast<int>(ruling_.facet % simd::lanes), kernel_cell_, sizes.data());
+  simd::tree_kernels().corner_sizes(tree_.view().blocks[ruling_.facet / simd::lanes],
+                                    static_cast<int>(ruling_.facet % simd::lanes), kernel_cell_,
+                                    sizes.data());
   for (int i = 0; i < 8; ++i) {
     ruling_corners_[i] = std::min(size_limit_, sizes[i] * tree_.unit());
   }
@@ -162,26 +160,14 @@ bool CellClassifier::few_facets_suffice(const GridCell& cell) {
     return false;
   }
   leaf_entries_.resize(max_leaf_entries);
-  simd::Survivors query;
-  query.cell = kernel_cell_;
-  double largest = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    const double size = ruling_corners_[i] / (1.0 + tolerance_) / tree_.unit();
-    query.cell.reciprocals[i] = as_reciprocal(size);
-    largest = std::max(largest, size);
-  }
-  query.largest = static_cast<float>(largest * (1.0 + rounding));
+  simd::Survivors query = survivors_below(1.0 / (1.0 + tolerance_), leaf_entries_);
   query.open_edge = 0.0f;
   query.open_blocks = true;
   query.most_facets = static_cast<std::uint32_t>(facets_per_exact_leaf_)
                       << std::clamp(cell.depth - deep, 0, 8);
-  query.entries = leaf_entries_.data();
-  query.capacity = max_leaf_entries;
-  const CellCandidates& entries = *candidates_;
-  if (!kernels().survivors(tree_.view(), entries.data(), static_cast<int>(entries.size()), query)) {
+  if (!collect(query, leaf_entries_)) {
     return false;
   }
-  leaf_entries_.resize(static_cast<std::size_t>(query.count));
   // The others are only good enough beside the facet that rules at the centre, which may not need
   // to be there by the same measure.
   if (ruling_.facet != FacetTree::Smallest::no_facet) {
@@ -205,26 +191,41 @@ void CellClassifier::find_ruling_entries(const GridCell& cell) {
   entries_known_ = true;
   CellCandidates& kept = split_.candidates;
   kept.resize(max_entries);
+  simd::Survivors query = survivors_below(1.0 + rounding, kept);
+  query.open_edge = static_cast<float>(open_edges * 2.0 * cell.half_edge(cube_) / tree_.unit());
+  query.open_blocks = false;
+  query.most_facets = ~0u;
+  if (!collect(query, kept)) {
+    kept = *candidates_;
+  }
+}
+
+/// Of what may be below the sizes that the ruling facet gives, times `factor`; there is room for as
+/// many entries as `room` has.
+simd::Survivors CellClassifier::survivors_below(double factor,
+                                                std::vector<simd::NodeEntry>& room) const {
   simd::Survivors query;
   query.cell = kernel_cell_;
   double largest = 0.0;
   for (int i = 0; i < 8; ++i) {
-    const double size = ruling_corners_[i] * (1.0 + rounding) / tree_.unit();
+    const double size = ruling_corners_[i] * factor / tree_.unit();
     query.cell.reciprocals[i] = as_reciprocal(size);
     largest = std::max(largest, size);
   }
   query.largest = static_cast<float>(largest * (1.0 + rounding));
-  query.open_edge = static_cast<float>(open_edges * 2.0 * cell.half_edge(cube_) / tree_.unit());
-  query.open_blocks = false;
-  query.most_facets = ~0u;
-  query.entries = kept.data();
-  query.capacity = max_entries;
-  const CellCandidates& entries = *candidates_;
-  if (kernels().survivors(tree_.view(), entries.data(), static_cast<int>(entries.size()), query)) {
-    kept.resize(static_cast<std::size_t>(query.count));
-  } else {
-    kept = entries;
+  query.entries = room.data();
+  query.capacity = static_cast<int>(room.size());
+  return query;
+}
+
+/// Fills the room that the query was made with; false if there are too many.
+bool CellClassifier::collect(simd::Survivors& query, std::vector<simd::NodeEntry>& entries) const {
+  if (!simd::tree_kernels().survivors(tree_.view(), candidates_->data(),
+                                      static_cast<int>(candidates_->size()), query)) {
+    return false;
   }
+  entries.resize(static_cast<std::size_t>(query.count));
+  return true;
 }
 
 /// Asks for what is not known yet all at once.
@@ -263,14 +264,7 @@ CellClassifier::Known& CellClassifier::known_size(const LatticePlace& place) {
 
 const CellClassifier::Split& CellClassifier::split(const GridCell& cell) {
   find_ruling_entries(cell);
-  std::array<int, 27> between;
-  int count = 0;
-  for (int i = 0; i < 27; ++i) {
-    if (is_between_corners(i) && i != lattice_centre) {
-      between[count++] = i;
-    }
-  }
-  find_lattice_sizes(cell, between.data(), count);
+  find_lattice_sizes(cell, between_corners.data(), static_cast<int>(between_corners.size()));
   split_.lattice[lattice_centre] = ruling_.size;
   for (int corner = 0; corner < 8; ++corner) {
     split_.lattice[lattice_index_of_corner(corner)] = cell.corner_values[corner];

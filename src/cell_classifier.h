@@ -73,6 +73,8 @@ class CellClassifier {
   bool not_much_too_fine(const GridCell& cell);
   bool few_facets_suffice(const GridCell& cell);
   void find_ruling_entries(const GridCell& cell);
+  simd::Survivors survivors_below(double factor, std::vector<simd::NodeEntry>& room) const;
+  bool collect(simd::Survivors& query, std::vector<simd::NodeEntry>& entries) const;
 
   const FacetTree& tree_;
   GridCube cube_;

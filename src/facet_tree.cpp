@@ -97,48 +97,37 @@ void FacetTree::Search::decide() {
   query->limit = std::min(query->limit, limit());
 }
 
+/// The size lies between the least lower bound of a candidate and the limit. If that is not close
+/// enough, or some candidates are decided already, double decides.
+void FacetTree::Search::decide_if_needed() {
+  if (best->facet == Smallest::no_facet && query->count > 0) {
+    const float least = *std::min_element(query->lower_bounds, query->lower_bounds + query->count);
+    if (least >= query->limit * (1.0f - good_enough_for_float)) {
+      best->size = std::min(best->size, query->limit * tree->layout_.unit);
+      return;
+    }
+  }
+  decide();
+}
+
 void FacetTree::run(simd::LeastSize* queries, std::size_t count) const {
-  static const simd::TreeKernels& kernels = simd::tree_kernels();
-  kernels.least_sizes(view(), queries, static_cast<int>(count));
+  simd::tree_kernels().least_sizes(view(), queries, static_cast<int>(count));
 }
 
 FacetTree::Smallest FacetTree::smallest(const Vec3& p, const Entries& entries,
                                         const Smallest& known) const {
   Smallest best = known;
-  if (!empty()) {
-    simd::LeastSize query;
-    Search search{this, &p, &best, &query};
-    search.begin(entries);
-    run(&query, 1);
-    search.decide();
-  }
+  search<1>(
+      &p, 1, [&entries](std::size_t) { return entries; }, &best, [](Search& one) { one.decide(); });
   return best;
 }
 
-/// The size lies between the least lower bound of a candidate and the limit.
-double FacetTree::Search::fast_answer(double upper_bound) {
-  const bool nothing_decided = best->facet == Smallest::no_facet;
-  const float least =
-      query->count == 0 || !nothing_decided
-          ? 0.0f
-          : *std::min_element(query->lower_bounds, query->lower_bounds + query->count);
-  if (least >= query->limit * (1.0f - good_enough_for_float)) {
-    return std::min(upper_bound, query->limit * tree->layout_.unit);
-  }
-  decide();
-  return best->size;
-}
-
 double FacetTree::fast_size(const Vec3& p, const Entries& entries, double upper_bound) const {
-  if (empty()) {
-    return upper_bound;
-  }
-  Smallest found{upper_bound, Smallest::no_facet};
-  simd::LeastSize query;
-  Search search{this, &p, &found, &query};
-  search.begin(entries);
-  run(&query, 1);
-  return search.fast_answer(upper_bound);
+  Smallest best{upper_bound, Smallest::no_facet};
+  search<1>(
+      &p, 1, [&entries](std::size_t) { return entries; }, &best,
+      [](Search& one) { one.decide_if_needed(); });
+  return best.size;
 }
 
 double FacetTree::size(const Vec3& p, double upper_bound) const {

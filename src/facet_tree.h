@@ -58,11 +58,6 @@ class FacetTree {
   /// enough for that, it is not asked for more. `upper_bound` where nothing is below it.
   double fast_size(const Vec3& p, const Entries& entries, double upper_bound) const;
 
-  /// The same for several points; entries(i) are those for point i.
-  template <typename EntriesOf>
-  void fast_sizes(const Vec3* points, std::size_t count, EntriesOf entries, double upper_bound,
-                  double* sizes) const;
-
   /// Where to find a facet alone, or nearly so.
   simd::NodeEntry entry_of(std::uint32_t facet) const {
     return layout_.block_entries[facet / simd::lanes];
@@ -72,6 +67,11 @@ class FacetTree {
   /// entries(i) are those for point i.
   template <typename EntriesOf>
   void smallest(const Vec3* points, std::size_t count, EntriesOf entries, Smallest* known) const;
+
+  /// The same with sizes as of `fast_size`; the facets are not told.
+  template <typename EntriesOf>
+  void fast_smallest(const Vec3* points, std::size_t count, EntriesOf entries,
+                     Smallest* known) const;
 
   struct Closest {
     std::size_t facet = 0;       ///< index into facets()
@@ -150,12 +150,15 @@ class FacetTree {
     void begin(const Entries& entries);
     float limit() const;
     void decide();
-    double fast_answer(double upper_bound);
+    void decide_if_needed();
   };
 
   /// Searches begun together.
   static constexpr std::size_t searches_at_once = 8;
 
+  template <std::size_t group, typename EntriesOf, typename Finish>
+  void search(const Vec3* points, std::size_t count, EntriesOf entries, Smallest* known,
+              Finish finish) const;
   void run(simd::LeastSize* queries, std::size_t count) const;
 
   /// Entries of a stack that holds up to seven siblings a level, of eleven levels.
@@ -172,49 +175,38 @@ class FacetTree {
   double largest_slope_ = 0.0;
 };
 
-template <typename EntriesOf>
-void FacetTree::smallest(const Vec3* points, std::size_t count, EntriesOf entries,
-                         Smallest* known) const {
+template <std::size_t group, typename EntriesOf, typename Finish>
+void FacetTree::search(const Vec3* points, std::size_t count, EntriesOf entries, Smallest* known,
+                       Finish finish) const {
   if (empty()) {
     return;
   }
-  std::array<simd::LeastSize, searches_at_once> queries;
-  std::array<Search, searches_at_once> searches;
-  for (std::size_t first = 0; first < count; first += searches_at_once) {
-    const std::size_t in_group = std::min(searches_at_once, count - first);
+  std::array<simd::LeastSize, group> queries;
+  std::array<Search, group> searches;
+  for (std::size_t first = 0; first < count; first += group) {
+    const std::size_t in_group = std::min(group, count - first);
     for (std::size_t i = 0; i < in_group; ++i) {
       searches[i] = {this, points + first + i, known + first + i, &queries[i]};
       searches[i].begin(entries(first + i));
     }
     run(queries.data(), in_group);
     for (std::size_t i = 0; i < in_group; ++i) {
-      searches[i].decide();
+      finish(searches[i]);
     }
   }
 }
 
 template <typename EntriesOf>
-void FacetTree::fast_sizes(const Vec3* points, std::size_t count, EntriesOf entries,
-                           double upper_bound, double* sizes) const {
-  if (empty()) {
-    std::fill(sizes, sizes + count, upper_bound);
-    return;
-  }
-  std::array<simd::LeastSize, searches_at_once> queries;
-  std::array<Search, searches_at_once> searches;
-  std::array<Smallest, searches_at_once> found;
-  for (std::size_t first = 0; first < count; first += searches_at_once) {
-    const std::size_t in_group = std::min(searches_at_once, count - first);
-    for (std::size_t i = 0; i < in_group; ++i) {
-      found[i] = {upper_bound, Smallest::no_facet};
-      searches[i] = {this, points + first + i, &found[i], &queries[i]};
-      searches[i].begin(entries(first + i));
-    }
-    run(queries.data(), in_group);
-    for (std::size_t i = 0; i < in_group; ++i) {
-      sizes[first + i] = searches[i].fast_answer(upper_bound);
-    }
-  }
+void FacetTree::smallest(const Vec3* points, std::size_t count, EntriesOf entries,
+                         Smallest* known) const {
+  search<searches_at_once>(points, count, entries, known, [](Search& one) { one.decide(); });
+}
+
+template <typename EntriesOf>
+void FacetTree::fast_smallest(const Vec3* points, std::size_t count, EntriesOf entries,
+                              Smallest* known) const {
+  search<searches_at_once>(points, count, entries, known,
+                           [](Search& one) { one.decide_if_needed(); });
 }
 
 template <typename Value, typename OfFacet, typename Merge>

@@ -319,53 +319,49 @@ double SizeField::exact_size(const Entity& entity, const Vec3& p) const {
   return found->tree->size(p, found->size_limit);
 }
 
-/// `ask(points, count, sizes)` for stretches of points that are finite; `no_size` for the others.
+/// `ask(group, points, count, sizes)` for stretches of points that are finite; `no_size` for the
+/// others, and where no function acts.
 template <typename Ask>
-void SizeField::ask_at_finite(const Vec3* points, std::size_t count, double* sizes, Ask ask) const {
-  for (std::size_t i = 0; i < count;) {
-    std::size_t end = i;
+void SizeField::ask_at_finite(const Entity& entity, const Vec3* points, std::size_t count,
+                              double* sizes, Ask ask) const {
+  std::fill(sizes, sizes + count, no_size);
+  const Group* found = group(entity);
+  if (found == nullptr || !found->tree) {
+    return;
+  }
+  for (std::size_t begin = 0; begin < count;) {
+    std::size_t end = begin;
     while (end < count && points[end].allFinite()) {
       ++end;
     }
-    if (end > i) {
-      ask(points + i, end - i, sizes + i);
+    if (end > begin) {
+      ask(*found, points + begin, end - begin, sizes + begin);
     }
-    if (end < count) {
-      sizes[end++] = no_size;
-    }
-    i = end;
+    begin = end + 1;
   }
 }
 
 void SizeField::sizes(const Entity& entity, const Vec3* points, std::size_t count,
                       double* sizes) const {
-  const Group* found = group(entity);
-  if (found == nullptr || !found->tree) {
-    std::fill(sizes, sizes + count, no_size);
-    return;
-  }
-  ask_at_finite(points, count, sizes, [found](const Vec3* from, std::size_t n, double* to) {
-    std::size_t interpolated = 0;
-    if (found->grid) {
-      interpolated = found->grid->sizes(from, n, to);
-    } else {
-      found->tree->sizes(from, n, found->size_limit, to);
-    }
-    found->answers->add(AnswerCount::grid, interpolated);
-    found->answers->add(AnswerCount::exact, n - interpolated);
-  });
+  ask_at_finite(entity, points, count, sizes,
+                [](const Group& group, const Vec3* from, std::size_t n, double* to) {
+                  std::size_t interpolated = 0;
+                  if (group.grid) {
+                    interpolated = group.grid->sizes(from, n, to);
+                  } else {
+                    group.tree->sizes(from, n, group.size_limit, to);
+                  }
+                  group.answers->add(AnswerCount::grid, interpolated);
+                  group.answers->add(AnswerCount::exact, n - interpolated);
+                });
 }
 
 void SizeField::exact_sizes(const Entity& entity, const Vec3* points, std::size_t count,
                             double* sizes) const {
-  const Group* found = group(entity);
-  if (found == nullptr || !found->tree) {
-    std::fill(sizes, sizes + count, no_size);
-    return;
-  }
-  ask_at_finite(points, count, sizes, [found](const Vec3* from, std::size_t n, double* to) {
-    found->tree->sizes(from, n, found->size_limit, to);
-  });
+  ask_at_finite(entity, points, count, sizes,
+                [](const Group& group, const Vec3* from, std::size_t n, double* to) {
+                  group.tree->sizes(from, n, group.size_limit, to);
+                });
 }
 
 // ==== Summary

@@ -166,7 +166,8 @@ class SizeField {
   bool wants_grid(const Group& group, const std::vector<Entity>& entities,
                   double sizes_per_tetrahedron) const;
   template <typename Ask>
-  void ask_at_finite(const Vec3* points, std::size_t count, double* sizes, Ask ask) const;
+  void ask_at_finite(const Entity& entity, const Vec3* points, std::size_t count, double* sizes,
+                     Ask ask) const;
   const Group* group(const Entity& entity) const;
 
   Topology topology_;

@@ -4,8 +4,7 @@
 # example: tests/run.sh -R grid; then the benchmarks are left out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-# Peers of the benchmarks.
-extra_packages=(libcgal-dev libembree-dev libbenchmark-dev)
+with_benchmarks=1
 . tests/setup.sh
 
 if command -v clang-format >/dev/null; then

@@ -11,7 +11,7 @@
 # not the recorded one), never because of a time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-extra_packages=(libcgal-dev libembree-dev libbenchmark-dev)
+with_benchmarks=1
 . tests/setup.sh
 
 quick=()

@@ -14,8 +14,9 @@ fail() {
   exit 1
 }
 
-# Who sources this may want more than that.
-[ -n "${extra_packages+set}" ] || extra_packages=()
+# Peers of the benchmarks, for who sets with_benchmarks.
+extra_packages=()
+[ -z "${with_benchmarks:-}" ] || extra_packages=(libcgal-dev libembree-dev libbenchmark-dev)
 
 install_packages() {
   local wanted=(

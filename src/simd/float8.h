@@ -1,5 +1,5 @@
 // Eight floats at once. Included by the bodies of kernels, inside a namespace of each instruction
-// set: the same names mean other instructions there. Needs <cmath>, and <immintrin.h> on x86.
+// set: the same names mean other instructions there. Needs <cstdint>, and <immintrin.h> on x86.
 
 typedef float Float8 __attribute__((vector_size(32)));
 typedef std::int32_t Int8 __attribute__((vector_size(32)));

@@ -28,6 +28,12 @@ inline Place cross(const Place& a, const Place& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// a x + b y + c z.
+inline Place combined(const Place& a, Float8 x, const Place& b, Float8 y, const Place& c,
+                      Float8 z) {
+  return {a.x * x + b.x * y + c.x * z, a.y * x + b.y * y + c.y * z, a.z * x + b.z * y + c.z * z};
+}
+
 inline Place float_place(const double* p) {
   return {all(static_cast<float>(p[0])), all(static_cast<float>(p[1])),
           all(static_cast<float>(p[2]))};
@@ -63,64 +69,39 @@ inline Float8 lower_bounds(const WideNode& node, float slope, const Place& p) {
   return load(node.start_size) + all(slope) * BoxView(node, p).distance();
 }
 
-/// The facets of a block, one a lane.
-struct AllFacets {
-  const FacetBlock& block;
-  Place corner() const {
-    return {load(block.corner[0]), load(block.corner[1]), load(block.corner[2])};
-  }
-  Place along() const { return {load(block.along[0]), load(block.along[1]), load(block.along[2])}; }
-  Place across() const {
-    return {load(block.across[0]), load(block.across[1]), load(block.across[2])};
-  }
-  Float8 length() const { return load(block.length); }
-  Float8 foot() const { return load(block.foot); }
-  Float8 height() const { return load(block.height); }
-  Float8 start_size() const { return load(block.start_size); }
-  Float8 slope() const { return load(block.slope); }
+/// A number of each facet in its lane.
+struct EachInItsLane {
+  Float8 operator()(const float (&numbers)[lanes]) const { return load(numbers); }
 };
 
-/// One facet in all lanes.
-struct OneFacet {
-  const FacetBlock& block;
+/// The number of one facet in all lanes.
+struct OneInAllLanes {
   int lane;
-  Place corner() const { return place(block.corner); }
-  Place along() const { return place(block.along); }
-  Place across() const { return place(block.across); }
-  Float8 length() const { return all(block.length[lane]); }
-  Float8 foot() const { return all(block.foot[lane]); }
-  Float8 height() const { return all(block.height[lane]); }
-  Float8 start_size() const { return all(block.start_size[lane]); }
-  Float8 slope() const { return all(block.slope[lane]); }
-
- private:
-  Place place(const float (&from)[3][lanes]) const {
-    return {all(from[0][lane]), all(from[1][lane]), all(from[2][lane])};
-  }
+  Float8 operator()(const float (&numbers)[lanes]) const { return all(numbers[lane]); }
 };
 
 /// Places as facets see them, given relative to the origin of the facets' block.
 struct FacetView {
-  Place along, across;
-  Float8 nx, ny, nz;  ///< normals
+  Place along, across, normal;
   Float8 dx, dy, dz;  ///< from the closest points to the place, in the facets' frames
   Float8 distance;
 
-  template <typename Facets>
-  FacetView(const Facets& facets, const Place& p) : along(facets.along()), across(facets.across()) {
-    const Place corner = facets.corner();
-    const Float8 px = p.x - corner.x, py = p.y - corner.y, pz = p.z - corner.z;
-    const Float8 ax = along.x, ay = along.y, az = along.z;
-    const Float8 cx = across.x, cy = across.y, cz = across.z;
-    nx = ay * cz - az * cy;
-    ny = az * cx - ax * cz;
-    nz = ax * cy - ay * cx;
-    const Float8 x = px * ax + py * ay + pz * az;
-    const Float8 y = px * cx + py * cy + pz * cz;
-    dz = px * nx + py * ny + pz * nz;
+  template <typename Take>
+  FacetView(const FacetBlock& block, Take take, const Place& p) {
+    const auto take_place = [&take](const float(&from)[3][lanes]) {
+      return Place{take(from[0]), take(from[1]), take(from[2])};
+    };
+    along = take_place(block.along);
+    across = take_place(block.across);
+    normal = cross(along, across);
+    const Place corner = take_place(block.corner);
+    const Place away = {p.x - corner.x, p.y - corner.y, p.z - corner.z};
+    const Float8 x = dot(away, along);
+    const Float8 y = dot(away, across);
+    dz = dot(away, normal);
 
     const Float8 zero = all(0.0f), one = all(1.0f), tiny = all(1e-36f);
-    const Float8 side = facets.length(), foot = facets.foot(), height = facets.height();
+    const Float8 side = take(block.length), foot = take(block.foot), height = take(block.height);
     // Along the longest side.
     dx = x - min(max(x, zero), side);
     dy = y;
@@ -152,16 +133,15 @@ struct FacetView {
     distance = sqrt(best + dz * dz);
   }
 
-  Place way() const {
-    return {dx * along.x + dy * across.x + dz * nx, dx * along.y + dy * across.y + dz * ny,
-            dx * along.z + dy * across.z + dz * nz};
-  }
+  /// From the closest points to the place.
+  Place way() const { return combined(along, dx, across, dy, normal, dz); }
 };
 
 inline FacetView view_of(const FacetBlock& block, const double* p) {
-  return FacetView(AllFacets{block}, {all(static_cast<float>(p[0] - block.origin[0])),
-                                      all(static_cast<float>(p[1] - block.origin[1])),
-                                      all(static_cast<float>(p[2] - block.origin[2]))});
+  return FacetView(block, EachInItsLane(),
+                   {all(static_cast<float>(p[0] - block.origin[0])),
+                    all(static_cast<float>(p[1] - block.origin[1])),
+                    all(static_cast<float>(p[2] - block.origin[2]))});
 }
 
 // ==== Descent
@@ -426,10 +406,8 @@ struct BoxRatios {
     const Float8 distance = view.distance();
     bounds = load(node.start_size) + all(slope) * distance;
     const Float8 steepness = all(slope) / max(distance, all(1e-30f));
-    const Float8 x = steepness * view.x, y = steepness * view.y, z = steepness * view.z;
-    const Place slopes = {x * view.first.x + y * view.second.x + z * view.third.x,
-                          x * view.first.y + y * view.second.y + z * view.third.y,
-                          x * view.first.z + y * view.second.z + z * view.third.z};
+    const Place slopes = combined(view.first, steepness * view.x, view.second, steepness * view.y,
+                                  view.third, steepness * view.z);
     // Close to the box, rounding turns the direction: that is taken off the plane.
     const Float8 reach =
         max(max(absolute(view.away.x), absolute(view.away.y)), absolute(view.away.z));
@@ -491,12 +469,11 @@ void corner_sizes(const FacetBlock& block, int lane, const CellCorners& cell, fl
   const auto relative = [&](int axis) {
     return all(static_cast<float>(cell.centre[axis] - block.origin[axis]));
   };
-  const OneFacet facet{block, lane};
+  const OneInAllLanes take{lane};
   const FacetView view(
-      facet, {relative(0) + h * x_sign, relative(1) + h * y_sign, relative(2) + h * z_sign});
-  const Float8 slope = facet.slope();
+      block, take, {relative(0) + h * x_sign, relative(1) + h * y_sign, relative(2) + h * z_sign});
   *reinterpret_cast<Float8*>(sizes) =
-      (facet.start_size() + slope * (view.distance + all(block.place_error))) *
+      (take(block.start_size) + take(block.slope) * (view.distance + all(block.place_error))) *
       all(1.0f + relative_rounding);
 }
 
