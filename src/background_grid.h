@@ -9,7 +9,7 @@
 
 #include "attached_region.h"
 #include "facet_tree.h"
-#include "grid_cell.h"
+#include "grid_nodes.h"
 
 namespace meshgrow {
 
@@ -46,6 +46,10 @@ class BackgroundGrid {
   BackgroundGrid(std::shared_ptr<const FacetTree> tree, double size_limit, const Box& box,
                  const GridOptions& options = {});
 
+  /// Takes over what another grid over an equal tree has stored.
+  BackgroundGrid(std::shared_ptr<const FacetTree> tree, StoredGrid stored);
+  const StoredGrid& stored() const { return stored_; }
+
   /// Size at the finite point p in model units: from the grid inside its cube, exact outside.
   double size(const Vec3& p) const;
 
@@ -56,41 +60,18 @@ class BackgroundGrid {
   /// Returns how many were interpolated.
   std::size_t sizes(const Vec3* points, std::size_t count, double* sizes) const;
 
-  struct Statistics {
-    std::size_t interpolated_leaves = 0;
-    std::size_t exact_leaves = 0;
-    std::size_t blocks = 0;  ///< inner nodes, eight children each
-    int depth = 0;
-    std::size_t bytes = 0;  ///< without the tree
-    double seconds = 0.0;   ///< wall time of building
-  };
-  const Statistics& statistics() const { return statistics_; }
+  using Statistics = GridStatistics;
+  const Statistics& statistics() const { return stored_.statistics; }
 
   const FacetTree& tree() const { return *tree_; }
-  double size_limit() const { return size_limit_; }
-  Box cube() const { return Box(cube_.origin, cube_.origin + Vec3::Constant(cube_.edge)); }
+  double size_limit() const { return stored_.size_limit; }
+  Box cube() const {
+    return Box(stored_.cube.origin, stored_.cube.origin + Vec3::Constant(stored_.cube.edge));
+  }
 
  private:
-  friend class GridBuilder;
-
-  using CornerValues = std::array<float, 8>;
-
-  /// Two bits of kind above 30 bits of index.
-  using NodeCode = std::uint32_t;
-  enum class NodeKind : std::uint32_t { block = 0, interpolated = 1, exact = 2, tree = 3 };
-
-  /// The nodes of one subtree; the codes index into the same part.
-  struct Nodes {
-    std::vector<std::array<NodeCode, 8>> blocks;
-    std::vector<CornerValues> corners;
-    std::vector<std::uint32_t> exact_begin;      ///< one more than exact leaves
-    std::vector<simd::NodeEntry> exact_entries;  ///< parts of the tree
-    int depth = 0;
-  };
-
-  static NodeCode code(NodeKind kind, std::size_t index);
-  static NodeKind kind(NodeCode code) { return static_cast<NodeKind>(code >> 30); }
-  static std::uint32_t index(NodeCode code) { return code & 0x3FFFFFFFu; }
+  using NodeCode = GridNodeCode;
+  using NodeKind = GridNodeKind;
 
   /// Where a point is: the leaf, and the place in it.
   struct Spot {
@@ -104,22 +85,11 @@ class BackgroundGrid {
   NodeCode child(const Spot& spot) const;
   double leaf_size(const Spot& spot, const Vec3& p) const;
   FacetTree::Entries exact_entries(NodeCode leaf) const;
-  void fill_table();
-  void fill_table(NodeCode node, int depth, std::uint32_t x, std::uint32_t y, std::uint32_t z);
+  void set_steps();
 
   std::shared_ptr<const FacetTree> tree_;
-  double size_limit_;
-  GridCube cube_;
+  StoredGrid stored_;
   double steps_per_unit_ = 0.0;
-  Nodes nodes_;
-  /// The nodes of one depth, or the leaves above it, side by side: spares the way down to them.
-  struct TableEntry {
-    NodeCode node;
-    std::uint32_t depth;
-  };
-  std::vector<TableEntry> table_;
-  int table_depth_ = 0;
-  Statistics statistics_;
 };
 
 }  // namespace meshgrow

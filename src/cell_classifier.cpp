@@ -142,7 +142,7 @@ void CellClassifier::find_ruling_corners() {
     return;
   }
   alignas(32) std::array<float, 8> sizes;
-  simd::tree_kernels().corner_sizes(tree_.view().blocks[ruling_.facet / simd::lanes],
+  simd::tree_kernels().corner_sizes(tree_.block_of(ruling_.facet),
                                     static_cast<int>(ruling_.facet % simd::lanes), kernel_cell_,
                                     sizes.data());
   for (int i = 0; i < 8; ++i) {

@@ -41,7 +41,8 @@ double integral(const SizedFacet& sized, double depth, double radius) {
 
 }  // namespace
 
-double expected_tetrahedra(const SizedFacets& facets, double size_limit, const Box& box) {
+double expected_tetrahedra(const StoredArray<SizedFacet>& facets, double size_limit,
+                           const Box& box) {
   if (box.isEmpty()) {
     return 0.0;
   }

@@ -29,18 +29,46 @@ FacetTree::FacetTree(SizedFacets facets, int threads) {
   if (facets.empty()) {
     return;
   }
-  facets_ = std::move(facets);
-  layout_ = layout_tree(facets_, threads);
-  for (const SizedFacet& facet : facets_) {
-    largest_slope_ = std::max(largest_slope_, facet.slope);
+  TreeLayout layout = layout_tree(facets, threads);
+  stored_.box = layout.box;
+  stored_.centre = layout.centre;
+  stored_.unit = layout.unit;
+  for (const SizedFacet& facet : facets) {
+    stored_.largest_slope = std::max(stored_.largest_slope, facet.slope);
   }
+  stored_.facets = std::move(facets);
+  stored_.order = std::move(layout.order);
+  stored_.nodes = std::move(layout.nodes);
+  stored_.boxes = std::move(layout.boxes);
+  stored_.slopes = std::move(layout.slopes);
+  stored_.blocks = std::move(layout.blocks);
+  stored_.block_entries = std::move(layout.block_entries);
+}
+
+simd::WideTree FacetTree::view() const {
+  simd::WideTree view;
+  view.nodes = stored_.nodes.data();
+  view.slopes = stored_.slopes.data();
+  view.blocks = stored_.blocks.data();
+  if (stored_.nodes.is_mapped()) {
+    view.owner = &stored_;
+    view.touch_node = [](const void* owner, std::uint32_t node) {
+      const auto& tree = *static_cast<const StoredTree*>(owner);
+      static_cast<void>(tree.nodes[node]);
+      static_cast<void>(tree.slopes[node]);
+    };
+    view.touch_block = [](const void* owner, std::uint32_t block) {
+      static_cast<void>(static_cast<const StoredTree*>(owner)->blocks[block]);
+    };
+  }
+  return view;
 }
 
 Box FacetTree::child_box(std::uint32_t node, int lane) const {
-  const WideBoxes& boxes = layout_.boxes[node];
+  const WideBoxes& boxes = stored_.boxes[node];
   const Vec3 lower(boxes.lower[0][lane], boxes.lower[1][lane], boxes.lower[2][lane]);
   const Vec3 upper(boxes.upper[0][lane], boxes.upper[1][lane], boxes.upper[2][lane]);
-  return Box(layout_.centre + layout_.unit * lower, layout_.centre + layout_.unit * upper);
+  return Box(stored_.centre + stored_.unit * lower, stored_.centre + stored_.unit * upper);
 }
 
 double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inverse_direction) {
@@ -65,7 +93,7 @@ double FacetTree::ray_enters(const Box& box, const Vec3& origin, const Vec3& inv
 // ==== Sizes
 
 void FacetTree::Search::begin(const Entries& entries) {
-  const Vec3 place = (*p - tree->layout_.centre) / tree->layout_.unit;
+  const Vec3 place = (*p - tree->stored_.centre) / tree->stored_.unit;
   for (int axis = 0; axis < 3; ++axis) {
     query->place[axis] = place[axis];
   }
@@ -78,7 +106,7 @@ void FacetTree::Search::begin(const Entries& entries) {
 }
 
 float FacetTree::Search::limit() const {
-  const double scaled = best->size / tree->layout_.unit * (1.0 + relative_rounding);
+  const double scaled = best->size / tree->stored_.unit * (1.0 + relative_rounding);
   return scaled < FLT_MAX ? static_cast<float>(scaled) : FLT_MAX;
 }
 
@@ -87,7 +115,7 @@ void FacetTree::Search::decide() {
   for (int i = 0; i < query->count; ++i) {
     if (query->lower_bounds[i] <= query->limit) {
       const std::uint32_t facet = query->facets[i];
-      const double size = tree->facets_[facet].size_at(*p);
+      const double size = tree->stored_.facets[facet].size_at(*p);
       if (size < best->size || (size == best->size && facet < best->facet)) {
         *best = {size, facet};
       }
@@ -103,7 +131,7 @@ void FacetTree::Search::decide_if_needed() {
   if (best->facet == Smallest::no_facet && query->count > 0) {
     const float least = *std::min_element(query->lower_bounds, query->lower_bounds + query->count);
     if (least >= query->limit * (1.0f - good_enough_for_float)) {
-      best->size = std::min(best->size, query->limit * tree->layout_.unit);
+      best->size = std::min(best->size, query->limit * tree->stored_.unit);
       return;
     }
   }
@@ -161,25 +189,25 @@ void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
 }
 
 bool FacetTree::is_near_enough_for_float(const Vec3& p) const {
-  return (p - layout_.centre).cwiseAbs().maxCoeff() < farthest_for_float * layout_.unit;
+  return (p - stored_.centre).cwiseAbs().maxCoeff() < farthest_for_float * stored_.unit;
 }
 
 double FacetTree::reference_size(const Vec3& p, double upper_bound) const {
   return best_first(
              upper_bound, [](std::size_t, const Box&) { return 0.0; },
-             [&](std::uint32_t i) { return facets_[i].size_at(p); })
+             [&](std::uint32_t i) { return stored_.facets[i].size_at(p); })
       .distance;
 }
 
 FacetTree::Closest FacetTree::closest_facet(const Vec3& p) const {
-  return closest_facet(p, infinity, [&](std::uint32_t i) { return distance(facets_[i].facet, p); });
+  return closest_facet(p, infinity,
+                       [&](std::uint32_t i) { return distance(stored_.facets[i].facet, p); });
 }
 
 std::size_t FacetTree::memory_bytes() const {
-  return facets_.capacity() * sizeof(SizedFacet) +
-         (layout_.order.capacity() + layout_.block_entries.capacity()) * sizeof(std::uint32_t) +
-         layout_.nodes.capacity() * (sizeof(simd::WideNode) + sizeof(WideBoxes) + sizeof(float)) +
-         layout_.blocks.capacity() * sizeof(simd::FacetBlock);
+  return stored_.facets.bytes() + stored_.order.bytes() + stored_.nodes.bytes() +
+         stored_.boxes.bytes() + stored_.slopes.bytes() + stored_.blocks.bytes() +
+         stored_.block_entries.bytes();
 }
 
 }  // namespace meshgrow

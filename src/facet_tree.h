@@ -28,6 +28,10 @@ class FacetTree {
   /// `threads` build (0: OMP_NUM_THREADS, else all processors); the result does not depend on it.
   explicit FacetTree(SizedFacets facets, int threads = 1);
 
+  /// Takes over what another tree has stored.
+  explicit FacetTree(StoredTree stored) : stored_(std::move(stored)) {}
+  const StoredTree& stored() const { return stored_; }
+
   /// Minimum over all facets of S0 + α · distance(p), or `upper_bound` where no facet is below it.
   /// p must be finite; model units. Float rules facets out, double decides among the rest.
   double size(const Vec3& p, double upper_bound = infinity) const;
@@ -60,7 +64,7 @@ class FacetTree {
 
   /// Where to find a facet alone, or nearly so.
   simd::NodeEntry entry_of(std::uint32_t facet) const {
-    return layout_.block_entries[facet / simd::lanes];
+    return stored_.block_entries[facet / simd::lanes];
   }
 
   /// The same for several points, in less time each. `known` on entry, the answers on return;
@@ -112,7 +116,7 @@ class FacetTree {
     return best_first(
         within, [&](std::size_t, const Box& box) { return ray_enters(box, origin, inverse); },
         [&](std::uint32_t i) {
-          const double hit = ray_distance(facets_[i].facet, origin, direction);
+          const double hit = ray_distance(stored_.facets[i].facet, origin, direction);
           return hit < infinity && accepts(i) ? hit : infinity;
         });
   }
@@ -122,21 +126,22 @@ class FacetTree {
   static double ray_enters(const Box& box, const Vec3& origin, const Vec3& inverse_direction);
 
   /// The facets in the tree's own order, neighbours in space near each other.
-  const SizedFacets& facets() const { return facets_; }
+  const StoredArray<SizedFacet>& facets() const { return stored_.facets; }
 
   /// Where facets()[i] stood in the set that the tree was made from.
-  std::size_t original_index(std::size_t i) const { return layout_.order[i]; }
+  std::size_t original_index(std::size_t i) const { return stored_.order[i]; }
 
-  bool empty() const { return facets_.empty(); }
+  bool empty() const { return stored_.facets.empty(); }
   std::size_t memory_bytes() const;
 
   /// For kernels: lengths in units of `unit()`, places relative to `centre()`.
-  simd::WideTree view() const {
-    return {layout_.nodes.data(), layout_.slopes.data(), layout_.blocks.data()};
+  simd::WideTree view() const;
+  const simd::FacetBlock& block_of(std::uint32_t facet) const {
+    return stored_.blocks[facet / simd::lanes];
   }
-  double unit() const { return layout_.unit; }
-  const Vec3& centre() const { return layout_.centre; }
-  double largest_slope() const { return largest_slope_; }
+  double unit() const { return stored_.unit; }
+  const Vec3& centre() const { return stored_.centre; }
+  double largest_slope() const { return stored_.largest_slope; }
   /// Farther away, float cannot rule anything out, and only `size` and `sizes` may be asked.
   bool is_near_enough_for_float(const Vec3& p) const;
 
@@ -170,9 +175,7 @@ class FacetTree {
   template <typename LowerBound, typename FacetValue>
   Closest best_first(double upper_bound, LowerBound lower_bound, FacetValue value) const;
 
-  SizedFacets facets_;
-  TreeLayout layout_;
-  double largest_slope_ = 0.0;
+  StoredTree stored_;
 };
 
 template <std::size_t group, typename EntriesOf, typename Finish>
@@ -215,14 +218,14 @@ std::vector<Value> FacetTree::node_values(OfFacet of_facet, Merge merge) const {
     return {};
   }
   // The first is for all; child k of node n is 1 + 8 n + k, and holds no value where there is none.
-  std::vector<Value> values(1 + layout_.nodes.size() * simd::lanes);
-  for (std::size_t n = layout_.nodes.size(); n-- > 0;) {  // children come after their parents
-    const simd::WideNode& node = layout_.nodes[n];
+  std::vector<Value> values(1 + stored_.nodes.size() * simd::lanes);
+  for (std::size_t n = stored_.nodes.size(); n-- > 0;) {  // children come after their parents
+    const simd::WideNode& node = stored_.nodes[n];
     for (int lane = 0; lane < simd::lanes && node.start_size[lane] < infinity; ++lane) {
       Value& value = values[1 + n * simd::lanes + lane];
       const std::uint32_t child = node.child[lane];
       if ((child & simd::WideNode::is_block) != 0) {
-        const simd::FacetBlock& block = layout_.blocks[child & ~simd::WideNode::is_block];
+        const simd::FacetBlock& block = stored_.blocks[child & ~simd::WideNode::is_block];
         value = of_facet(block.first);
         for (std::uint32_t k = 1; k < block.count; ++k) {
           merge(value, of_facet(block.first + k));
@@ -230,7 +233,7 @@ std::vector<Value> FacetTree::node_values(OfFacet of_facet, Merge merge) const {
       } else {
         const std::size_t first = 1 + static_cast<std::size_t>(child) * simd::lanes;
         value = values[first];
-        const simd::WideNode& below = layout_.nodes[child];
+        const simd::WideNode& below = stored_.nodes[child];
         for (int k = 1; k < simd::lanes && below.start_size[k] < infinity; ++k) {
           merge(value, values[first + k]);
         }
@@ -238,7 +241,7 @@ std::vector<Value> FacetTree::node_values(OfFacet of_facet, Merge merge) const {
     }
   }
   values[0] = values[1];
-  for (int k = 1; k < simd::lanes && layout_.nodes[0].start_size[k] < infinity; ++k) {
+  for (int k = 1; k < simd::lanes && stored_.nodes[0].start_size[k] < infinity; ++k) {
     merge(values[0], values[1 + k]);
   }
   return values;
@@ -251,8 +254,8 @@ FacetTree::Closest FacetTree::best_first(double upper_bound, LowerBound lower_bo
     double bound;
     std::uint32_t child;
   };
-  Closest best{facets_.size(), upper_bound};
-  if (layout_.nodes.empty() || !(lower_bound(0, layout_.box) < best.distance)) {
+  Closest best{stored_.facets.size(), upper_bound};
+  if (stored_.nodes.empty() || !(lower_bound(0, stored_.box) < best.distance)) {
     return best;
   }
   std::array<Entry, stack_size> stack;
@@ -264,7 +267,7 @@ FacetTree::Closest FacetTree::best_first(double upper_bound, LowerBound lower_bo
       continue;
     }
     if ((entry.child & simd::WideNode::is_block) != 0) {
-      const simd::FacetBlock& block = layout_.blocks[entry.child & ~simd::WideNode::is_block];
+      const simd::FacetBlock& block = stored_.blocks[entry.child & ~simd::WideNode::is_block];
       for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
         const double candidate = value(i);
         if (candidate < best.distance) {
@@ -273,7 +276,7 @@ FacetTree::Closest FacetTree::best_first(double upper_bound, LowerBound lower_bo
       }
       continue;
     }
-    const simd::WideNode& node = layout_.nodes[entry.child];
+    const simd::WideNode& node = stored_.nodes[entry.child];
     const std::size_t first = top;
     for (int lane = 0; lane < simd::lanes && node.start_size[lane] < infinity; ++lane) {
       const Entry child{lower_bound(1 + static_cast<std::size_t>(entry.child) * simd::lanes + lane,

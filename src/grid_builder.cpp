@@ -34,8 +34,11 @@ std::array<GridCell, 8> children_of(const GridCell& cell, const Lattice& lattice
 
 }  // namespace
 
-GridBuilder::GridBuilder(BackgroundGrid& grid, const GridOptions& options)
-    : grid_(grid),
+GridBuilder::GridBuilder(const FacetTree& tree, const GridCube& cube, double size_limit,
+                         const GridOptions& options)
+    : tree_(tree),
+      cube_(cube),
+      size_limit_(size_limit),
       options_(options),
       tolerance_(options.tolerance - rounding_reserve * (1.0 + options.tolerance)) {
   classifiers_.resize(
@@ -46,13 +49,13 @@ CellClassifier& GridBuilder::own_classifier(int thread) {
   std::unique_ptr<CellClassifier>& own = classifiers_.at(static_cast<std::size_t>(thread));
   if (!own) {
     own =
-        std::make_unique<CellClassifier>(*grid_.tree_, grid_.cube_, grid_.size_limit_, tolerance_,
+        std::make_unique<CellClassifier>(tree_, cube_, size_limit_, tolerance_,
                                          static_cast<std::size_t>(options_.facets_per_exact_leaf));
   }
   return *own;
 }
 
-void GridBuilder::build() {
+GridNodes GridBuilder::build() {
   const std::vector<OpenCell> open = build_top();
   std::vector<Nodes> parts(open.size());
   std::vector<NodeCode> roots(open.size());
@@ -72,10 +75,11 @@ void GridBuilder::build() {
     append_subtree(parts[i], roots[i], open[i]);
     parts[i] = Nodes();
   }
-  grid_.nodes_.exact_begin.push_back(static_cast<std::uint32_t>(grid_.nodes_.exact_entries.size()));
+  nodes_.exact_begin.push_back(static_cast<std::uint32_t>(nodes_.exact_entries.size()));
   if (options_.progress) {
     options_.progress(1.0);
   }
+  return std::move(nodes_);
 }
 
 std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
@@ -83,18 +87,17 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   root.candidates = std::make_shared<CellCandidates>(1, FacetTree::root);
 
   // Block 0 stands above the root: its first child is the root's own place.
-  Nodes& nodes = grid_.nodes_;
+  Nodes& nodes = nodes_;
   nodes.blocks.emplace_back();
   for (int i = 0; i < 8; ++i) {
-    if (!grid_.tree_->is_near_enough_for_float(grid_.cube_.at(root.cell.corner(i)))) {
-      set_code(root, BackgroundGrid::code(NodeKind::tree, 0));
+    if (!tree_.is_near_enough_for_float(cube_.at(root.cell.corner(i)))) {
+      set_code(root, grid_node(NodeKind::tree, 0));
       return {};
     }
   }
-  root.ruling = own_classifier(0).smallest(root.cell.centre(grid_.cube_));
+  root.ruling = own_classifier(0).smallest(root.cell.centre(cube_));
   for (int i = 0; i < 8; ++i) {
-    root.cell.corner_values[i] =
-        own_classifier(0).smallest(grid_.cube_.at(root.cell.corner(i))).size;
+    root.cell.corner_values[i] = own_classifier(0).smallest(cube_.at(root.cell.corner(i))).size;
   }
   root.whereabouts = of_root(root.cell);
   std::vector<OpenCell> open{root};
@@ -114,7 +117,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       Classified& result = classified[i];
       if (open[i].whereabouts.place == Whereabouts::Place::outside) {
         result.verdict = Verdict::keep_facets;
-        result.code = BackgroundGrid::code(NodeKind::tree, 0);
+        result.code = grid_node(NodeKind::tree, 0);
         return;
       }
       result.verdict = own.classify(open[i].cell, open[i].ruling, *open[i].candidates);
@@ -135,7 +138,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
       }
       const std::size_t block = nodes.blocks.size();
       nodes.blocks.emplace_back();
-      set_code(open[i], BackgroundGrid::code(NodeKind::block, block));
+      set_code(open[i], grid_node(NodeKind::block, block));
       const auto candidates = std::make_shared<CellCandidates>(result.split.candidates);
       for (int child = 0; child < 8; ++child) {
         next.push_back({result.children[child], result.split.ruling[child], candidates, block,
@@ -149,7 +152,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
 
 /// Within the cell, and in no plane in which a boundary is likely to lie.
 Vec3 GridBuilder::point_of_reference(const GridCell& cell) const {
-  return grid_.cube_.at(cell.lowest) + cell.half_edge(grid_.cube_) * Vec3(0.9743, 1.0467, 1.0271);
+  return cube_.at(cell.lowest) + cell.half_edge(cube_) * Vec3(0.9743, 1.0467, 1.0271);
 }
 
 GridBuilder::Whereabouts GridBuilder::of_root(const GridCell& root) const {
@@ -171,8 +174,8 @@ std::array<GridBuilder::Whereabouts, 8> GridBuilder::of_children(
   }
   unsigned untouched = 0;
   for (int i = 0; i < 8; ++i) {
-    const double radius = std::sqrt(3.0) * children[i].half_edge(grid_.cube_);
-    untouched |= options_.region->touches(children[i].centre(grid_.cube_), radius) ? 0u : 1u << i;
+    const double radius = std::sqrt(3.0) * children[i].half_edge(cube_);
+    untouched |= options_.region->touches(children[i].centre(cube_), radius) ? 0u : 1u << i;
   }
   Whereabouts nearest = parent;
   for (unsigned open = untouched; open != 0;) {
@@ -214,14 +217,14 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
                                                  CellClassifier& classifier, Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
   if (whereabouts.place == Whereabouts::Place::outside) {
-    return BackgroundGrid::code(NodeKind::tree, 0);
+    return grid_node(NodeKind::tree, 0);
   }
   const Verdict verdict = classifier.classify(cell, ruling, candidates);
   if (verdict != Verdict::split) {
     return append_leaf(verdict, cell, classifier, nodes);
   }
   if (cell.depth == max_grid_depth) {
-    return BackgroundGrid::code(NodeKind::tree, 0);
+    return grid_node(NodeKind::tree, 0);
   }
   const CellClassifier::Split split = classifier.split(cell);
   const std::size_t block = nodes.blocks.size();
@@ -233,7 +236,7 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
                                         places[child], classifier, nodes);
     nodes.blocks[block][child] = code;
   }
-  return BackgroundGrid::code(NodeKind::block, block);
+  return grid_node(NodeKind::block, block);
 }
 
 GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& cell,
@@ -241,22 +244,22 @@ GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& 
   nodes.depth = std::max(nodes.depth, cell.depth);
   if (verdict == Verdict::interpolate) {
     if (!std::all_of(cell.corner_values.begin(), cell.corner_values.end(), fits_float)) {
-      return BackgroundGrid::code(NodeKind::tree, 0);
+      return grid_node(NodeKind::tree, 0);
     }
-    BackgroundGrid::CornerValues values;
+    GridCorners values;
     std::transform(cell.corner_values.begin(), cell.corner_values.end(), values.begin(),
                    [&](double value) { return static_cast<float>(value * classifier.scale()); });
     nodes.corners.push_back(values);
-    return BackgroundGrid::code(NodeKind::interpolated, nodes.corners.size() - 1);
+    return grid_node(NodeKind::interpolated, nodes.corners.size() - 1);
   }
   nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_entries.size()));
   nodes.exact_entries.insert(nodes.exact_entries.end(), classifier.leaf_entries().begin(),
                              classifier.leaf_entries().end());
-  return BackgroundGrid::code(NodeKind::exact, nodes.exact_begin.size() - 1);
+  return grid_node(NodeKind::exact, nodes.exact_begin.size() - 1);
 }
 
 void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place) {
-  Nodes& nodes = grid_.nodes_;
+  Nodes& nodes = nodes_;
   const std::size_t first_block = nodes.blocks.size();
   const std::size_t first_corners = nodes.corners.size();
   const std::size_t first_exact = nodes.exact_begin.size();
@@ -265,14 +268,14 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
     throw Error("The background grid has too many exact cells: raise its tolerance.");
   }
   const auto moved = [&](NodeCode code) {
-    const std::uint32_t index = BackgroundGrid::index(code);
-    switch (BackgroundGrid::kind(code)) {
+    const std::uint32_t index = index_of(code);
+    switch (kind_of(code)) {
       case NodeKind::block:
-        return BackgroundGrid::code(NodeKind::block, first_block + index);
+        return grid_node(NodeKind::block, first_block + index);
       case NodeKind::interpolated:
-        return BackgroundGrid::code(NodeKind::interpolated, first_corners + index);
+        return grid_node(NodeKind::interpolated, first_corners + index);
       case NodeKind::exact:
-        return BackgroundGrid::code(NodeKind::exact, first_exact + index);
+        return grid_node(NodeKind::exact, first_exact + index);
       default:
         return code;
     }
@@ -292,7 +295,7 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
 }
 
 void GridBuilder::set_code(const OpenCell& place, NodeCode code) {
-  grid_.nodes_.blocks[place.block][place.child] = code;
+  nodes_.blocks[place.block][place.child] = code;
 }
 
 }  // namespace meshgrow

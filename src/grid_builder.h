@@ -15,14 +15,15 @@ namespace meshgrow {
 /// result is the same to the bit for any number of threads.
 class GridBuilder {
  public:
-  GridBuilder(BackgroundGrid& grid, const GridOptions& options);
+  GridBuilder(const FacetTree& tree, const GridCube& cube, double size_limit,
+              const GridOptions& options);
 
-  void build();
+  GridNodes build();
 
  private:
-  using NodeCode = BackgroundGrid::NodeCode;
-  using NodeKind = BackgroundGrid::NodeKind;
-  using Nodes = BackgroundGrid::Nodes;
+  using NodeCode = GridNodeCode;
+  using NodeKind = GridNodeKind;
+  using Nodes = GridNodes;
   using Verdict = CellClassifier::Verdict;
 
   /// Where a cell is against the region in which sizes are asked for.
@@ -59,8 +60,11 @@ class GridBuilder {
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);
   void set_code(const OpenCell& place, NodeCode code);
 
-  BackgroundGrid& grid_;
+  const FacetTree& tree_;
+  const GridCube& cube_;
+  double size_limit_;
   const GridOptions& options_;
+  Nodes nodes_;
   double tolerance_;
   std::vector<std::unique_ptr<CellClassifier>> classifiers_;  ///< one a thread
 };

@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "error.h"
 #include "expected_elements.h"
 #include "growth_law.h"
 #include "number_text.h"
@@ -27,12 +28,14 @@ std::size_t SizeField::add(SizeFunction function) {
   validate(function, meshgrow::function_name(function, functions_.size()), topology_);
   functions_.push_back(std::move(function));
   facets_.emplace_back();
+  facet_counts_.push_back(0);
   effective_.push_back(false);
   try {
     regroup();
   } catch (...) {
     functions_.pop_back();
     facets_.pop_back();
+    facet_counts_.pop_back();
     effective_.pop_back();
     throw;
   }
@@ -124,6 +127,7 @@ void SizeField::set_facets(std::size_t function, SizedFacets facets) {
     return;  // trees and grids are good as they are
   }
   facets_[function] = std::move(facets);
+  facet_counts_[function] = facets_[function].size();
   effective_[function] = effective;
   for (Group& group : groups_) {
     for (const Action& action : group.actions) {
@@ -175,6 +179,16 @@ void SizeField::build(const std::vector<Entity>& entities, double sizes_per_tetr
   }
 }
 
+void SizeField::build_grids() {
+  build_trees();
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    Group& group = groups_[i];
+    if (!group.grid && options_.evaluator != Evaluator::exact && !group.tree->empty()) {
+      build_grid(i, group);
+    }
+  }
+}
+
 void SizeField::build_trees() {
   for (Group& group : groups_) {
     if (group.changed) {
@@ -205,7 +219,7 @@ bool SizeField::wants_grid(const Group& group, const std::vector<Entity>& entiti
       box.extend(topology_.box(entity));
     }
   }
-  const SizedFacets& facets = group.tree->facets();
+  const StoredArray<SizedFacet>& facets = group.tree->facets();
   const double sizes =
       sizes_per_tetrahedron <= 0.0 || box.isEmpty()
           ? 0.0
@@ -364,6 +378,42 @@ void SizeField::exact_sizes(const Entity& entity, const Vec3* points, std::size_
                 });
 }
 
+// ==== Parts
+
+SizeField::Parts SizeField::parts() const {
+  Parts parts = {options_.tolerance, topology_, functions_, effective_, facet_counts_, {}};
+  for (const Group& group : groups_) {
+    if (group.changed || !group.tree) {
+      throw Error("The size field has changed since it was built: build it before saving it.");
+    }
+    parts.groups.push_back(
+        {group.actions, group.entities, group.size_limit, group.tree, group.grid});
+  }
+  return parts;
+}
+
+SizeField::SizeField(Parts parts)
+    : topology_(std::move(parts.topology)),
+      functions_(std::move(parts.functions)),
+      facets_(functions_.size()),
+      facet_counts_(std::move(parts.facet_counts)),
+      effective_(std::move(parts.effective)) {
+  options_.tolerance = parts.tolerance;
+  for (Part& part : parts.groups) {
+    for (const Entity& entity : part.entities) {
+      group_of_[entity] = groups_.size();
+    }
+    Group group;
+    group.actions = std::move(part.actions);
+    group.entities = std::move(part.entities);
+    group.changed = false;
+    group.size_limit = part.size_limit;
+    group.tree = std::move(part.tree);
+    group.grid = std::move(part.grid);
+    groups_.push_back(std::move(group));
+  }
+}
+
 // ==== Summary
 
 std::vector<SizeField::GroupSummary> SizeField::groups() const {
@@ -409,7 +459,7 @@ std::string SizeField::summary() const {
       text << ", min " << shortest(function.min_size);
     }
     if (is_effective(i)) {
-      text << ", " << grouped_digits(facets_[i].size()) << " facets";
+      text << ", " << grouped_digits(facet_counts_[i]) << " facets";
     }
     text << (is_effective(i) ? "\n" : " (no effect: its sources have no mesh yet)\n");
   }

@@ -89,6 +89,10 @@ class SizeField {
   /// dimension are never asked for so many.
   void build(const std::vector<Entity>& entities = {}, double sizes_per_tetrahedron = 0.0);
 
+  /// Brings the trees of all groups up to date and, unless the evaluator is exact, builds all
+  /// grids.
+  void build_grids();
+
   /// Brings the trees of all groups up to date, and no grids: changed groups answer exactly until
   /// the next `build`.
   void build_trees();
@@ -125,16 +129,6 @@ class SizeField {
   };
   std::vector<GroupSummary> groups() const;
 
-  /// Functions, groups and grids as lines of text for people.
-  std::string summary() const;
-
- private:
-  struct EntityHash {
-    std::size_t operator()(const Entity& entity) const {
-      return std::hash<long long>()(static_cast<long long>(entity.tag) * 4 + entity.dim);
-    }
-  };
-
   /// A function as a group sees it. Inside a source volume a fixed function has its start size
   /// everywhere, since the distance to the source is zero there.
   struct Action {
@@ -142,6 +136,38 @@ class SizeField {
     bool inside_source = false;
     friend bool operator<(const Action& a, const Action& b) {
       return std::tie(a.function, a.inside_source) < std::tie(b.function, b.inside_source);
+    }
+  };
+
+  /// All that a built field answers from, for a file (field_file.h).
+  struct Part {
+    std::vector<Action> actions;
+    std::vector<Entity> entities;
+    double size_limit = no_size;
+    std::shared_ptr<const FacetTree> tree;
+    std::shared_ptr<const BackgroundGrid> grid;  ///< null if there is none
+  };
+  struct Parts {
+    double tolerance = 0.0;
+    Topology topology;
+    std::vector<SizeFunction> functions;
+    std::vector<bool> effective;
+    std::vector<std::size_t> facet_counts;  ///< of the functions
+    std::vector<Part> groups;
+  };
+  /// Throws Error if a group was not built since its last change.
+  Parts parts() const;
+  /// A field that answers as the one did whose parts they are. Its functions have no sources to
+  /// build anything from.
+  explicit SizeField(Parts parts);
+
+  /// Functions, groups and grids as lines of text for people.
+  std::string summary() const;
+
+ private:
+  struct EntityHash {
+    std::size_t operator()(const Entity& entity) const {
+      return std::hash<long long>()(static_cast<long long>(entity.tag) * 4 + entity.dim);
     }
   };
 
@@ -174,6 +200,7 @@ class SizeField {
   FieldOptions options_;
   std::vector<SizeFunction> functions_;
   std::vector<SizedFacets> facets_;
+  std::vector<std::size_t> facet_counts_;
   std::vector<bool> effective_;
   std::vector<Group> groups_;
   std::unordered_map<Entity, std::size_t, EntityHash> group_of_;

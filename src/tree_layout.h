@@ -6,6 +6,7 @@
 
 #include "simd/wide_tree.h"
 #include "sized_facets.h"
+#include "stored_array.h"
 
 namespace meshgrow {
 
@@ -28,6 +29,21 @@ struct TreeLayout {
   std::vector<float> slopes;     ///< smallest below each node
   std::vector<simd::FacetBlock> blocks;
   std::vector<simd::NodeEntry> block_entries;  ///< where each block hangs
+};
+
+/// A tree as it is searched, in memory or in a file.
+struct StoredTree {
+  Box box;
+  Vec3 centre = Vec3::Zero();
+  double unit = 1.0;
+  double largest_slope = 0.0;
+  StoredArray<SizedFacet> facets;  ///< in the order of the tree
+  StoredArray<std::uint32_t> order;
+  StoredArray<simd::WideNode> nodes;
+  StoredArray<WideBoxes> boxes;
+  StoredArray<float> slopes;
+  StoredArray<simd::FacetBlock> blocks;
+  StoredArray<simd::NodeEntry> block_entries;
 };
 
 /// Brings the facets into order as well. The same for any number of threads (0: as many as

@@ -133,7 +133,8 @@ inline SizedFacets random_facets(Random& random, const RandomFacets& wanted) {
 }
 
 /// Scattered over the surroundings, close to facets, on facets and their corners, and far away.
-inline Vec3 random_query(Random& random, const SizedFacets& facets, const Box& box) {
+template <typename Facets>
+Vec3 random_query(Random& random, const Facets& facets, const Box& box) {
   const Facet& facet = facets[random_index(random, facets.size())].facet;
   const double reach = box.sizes().maxCoeff();
   switch (random_index(random, 8)) {

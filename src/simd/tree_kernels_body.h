@@ -276,6 +276,20 @@ struct Descent {
   }
 };
 
+inline const WideNode& node_of(const WideTree& tree, std::uint32_t index) {
+  if (tree.touch_node != nullptr) {
+    tree.touch_node(tree.owner, index);
+  }
+  return tree.nodes[index];
+}
+
+inline const FacetBlock& block_of(const WideTree& tree, std::uint32_t index) {
+  if (tree.touch_block != nullptr) {
+    tree.touch_block(tree.owner, index);
+  }
+  return tree.blocks[index];
+}
+
 inline void prefetch_lines(const void* begin, int bytes) {
   for (int i = 0; i < bytes; i += 64) {
     __builtin_prefetch(static_cast<const char*>(begin) + i);
@@ -342,11 +356,11 @@ struct LeastSizeSearch {
   Place place;
 
   Level enter(std::uint32_t index) const {
-    const WideNode& node = tree->nodes[index];
+    const WideNode& node = node_of(*tree, index);
     return {lower_bounds(node, tree->slopes[index], place), &node, all_children};
   }
   bool ask(std::uint32_t block) const {
-    ask_block(tree->blocks[block], *query);
+    ask_block(block_of(*tree, block), *query);
     return true;
   }
   float limit() const { return query->limit; }
@@ -438,11 +452,11 @@ struct LeastRatioSearch {
   Place centre;
 
   Level enter(std::uint32_t index) const {
-    const WideNode& node = tree->nodes[index];
+    const WideNode& node = node_of(*tree, index);
     return {BoxRatios(node, tree->slopes[index], query->cell, centre).ratios, &node, all_children};
   }
   bool ask(std::uint32_t block) const {
-    const Float8 ratios = block_ratios(tree->blocks[block], query->cell);
+    const Float8 ratios = block_ratios(block_of(*tree, block), query->cell);
     const float least = ratios[least_lane(ratios, all_children)];
     query->ratio = least < query->ratio ? least : query->ratio;
     return query->ratio >= query->enough;
@@ -487,7 +501,7 @@ struct Collector {
 
   /// False when the search is over without success.
   bool visit(std::uint32_t index, unsigned mask) {
-    const WideNode& node = tree.nodes[index];
+    const WideNode& node = node_of(tree, index);
     const BoxRatios boxes(node, tree.slopes[index], query.cell, centre);
     const Float8 nearest = boxes.bounds - all(tree.slopes[index] * half_diagonal);
     mask &= bits((boxes.ratios < all(1.0f)) & (nearest < all(query.largest)));
@@ -500,7 +514,7 @@ struct Collector {
       const int lane = __builtin_ctz(rest);
       const std::uint32_t child = node.child[lane];
       if ((child & WideNode::is_block) != 0) {
-        if (!query.open_blocks || block_survives(tree.blocks[child & ~WideNode::is_block])) {
+        if (!query.open_blocks || block_survives(block_of(tree, child & ~WideNode::is_block))) {
           kept |= 1u << lane;
         }
         if (query.facets > query.most_facets) {

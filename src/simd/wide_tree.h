@@ -54,6 +54,10 @@ struct WideTree {
   const WideNode* nodes = nullptr;
   const float* slopes = nullptr;  ///< smallest below each node
   const FacetBlock* blocks = nullptr;
+  /// Called before the first use of a node or block, unless null; may throw.
+  void (*touch_node)(const void* owner, std::uint32_t node) = nullptr;
+  void (*touch_block)(const void* owner, std::uint32_t block) = nullptr;
+  const void* owner = nullptr;
 };
 
 }  // namespace meshgrow::simd

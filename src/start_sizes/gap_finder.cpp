@@ -212,7 +212,7 @@ double GapFinder::least_opposing(const Bundle& bundle, const Place& place, doubl
                                  const Value& value) const {
   const Place turned{bundle.frame * place.normal, bundle.frame * (place.centre - centre_),
                      place.radius};
-  const SizedFacets& facets = bundle.tree.facets();
+  const StoredArray<SizedFacet>& facets = bundle.tree.facets();
   double least = within;
   bundle.tree.closest_facet(
       within,

@@ -172,7 +172,7 @@ std::vector<std::uint32_t> smooth_patches(const std::vector<Wall>& walls,
 
 }  // namespace
 
-WallMeetings::WallMeetings(const std::vector<Wall>& walls) : places_({}) {
+WallMeetings::WallMeetings(const std::vector<Wall>& walls) : places_(SizedFacets()) {
   if (walls.empty()) {
     return;
   }
@@ -221,7 +221,7 @@ std::vector<WallMeetings::Meeting> WallMeetings::near(std::size_t wall, const Ve
            std::none_of(found.begin(), found.end(),
                         [&](const Meeting& meeting) { return meeting.patch == other(place); });
   };
-  const SizedFacets& places = places_.facets();
+  const StoredArray<SizedFacet>& places = places_.facets();
   for (;;) {
     const FacetTree::Closest closest = places_.closest_facet(p, within, [&](std::uint32_t i) {
       return is_new(i) ? distance(places[i].facet, p) : FacetTree::infinity;

@@ -222,7 +222,7 @@ BackgroundGrid grid_of(const Case& field, double tolerance, int threads = 1,
 /// middle or on the corners of small cells, where interpolation is worst or changes.
 std::vector<Vec3> test_points(const BackgroundGrid& grid, std::size_t count, unsigned seed) {
   Random random(seed);
-  const SizedFacets& facets = grid.tree().facets();
+  const SizedFacets facets(grid.tree().facets().begin(), grid.tree().facets().end());
   const Box cube = grid.cube();
   std::vector<Vec3> points;
   while (points.size() < count) {
@@ -262,7 +262,7 @@ std::string point_text(const Vec3& p) {
 void expect_promises_kept(const BackgroundGrid& grid, double tolerance, std::size_t point_count,
                           unsigned seed) {
   SCOPED_TRACE("seed " + std::to_string(seed));
-  const SizedFacets& facets = grid.tree().facets();
+  const SizedFacets facets(grid.tree().facets().begin(), grid.tree().facets().end());
   const std::vector<Vec3> points = test_points(grid, point_count, seed);
   double worst_over = -1.0;
   Vec3 worst_point = Vec3::Zero();

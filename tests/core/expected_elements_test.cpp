@@ -59,7 +59,8 @@ TEST(ExpectedTetrahedra, AreFiniteForAnyFacets) {
   for (const Facet& facet : {Facet::point({0, 0, 0}), Facet::segment({0, 0, 0}, {1, 0, 0}),
                              Facet::triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0})}) {
     for (const double slope : {0.0, 1e-9, 0.5}) {
-      const double estimate = expected_tetrahedra({{facet, 0.01, slope}}, 1.0, test::cube(1.0));
+      const double estimate =
+          expected_tetrahedra(SizedFacets{{facet, 0.01, slope}}, 1.0, test::cube(1.0));
       EXPECT_TRUE(std::isfinite(estimate));
       EXPECT_GE(estimate, 4.2 * 8.0);
     }

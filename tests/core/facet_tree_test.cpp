@@ -128,7 +128,7 @@ TEST_P(FacetTreeOf, ClosestFacetEqualsBruteForce) {
   wanted.mix = GetParam();
   wanted.count = 300;
   const FacetTree tree(test::random_facets(random, wanted));
-  const SizedFacets& facets = tree.facets();
+  const SizedFacets facets(tree.facets().begin(), tree.facets().end());
   for (int i = 0; i < 20000; ++i) {
     const Vec3 p = test::random_query(random, facets, wanted.box);
     double expected = FacetTree::infinity;
@@ -172,7 +172,7 @@ TEST_P(FacetTreeOf, ClosestAmongSomeFacetsEqualsBruteForce) {
   wanted.mix = GetParam();
   wanted.count = 300;
   const FacetTree tree(test::random_facets(random, wanted));
-  const SizedFacets& facets = tree.facets();
+  const SizedFacets facets(tree.facets().begin(), tree.facets().end());
   const std::vector<double> largest_below = tree.node_values<double>(
       [&](std::size_t i) { return facets[i].start_size; },
       [](double& largest, double other) { largest = std::max(largest, other); });
@@ -353,7 +353,7 @@ TEST(FacetTree, GentlerSlopeRulesFarAway) {
 // ==== Special sets of facets
 
 TEST(FacetTree, EmptyTree) {
-  const FacetTree tree({});
+  const FacetTree tree(SizedFacets{});
   EXPECT_TRUE(tree.empty());
   EXPECT_TRUE(tree.facets().empty());
   EXPECT_EQ(tree.size({1, 2, 3}), FacetTree::infinity);
@@ -466,7 +466,7 @@ TEST(FacetTree, FacetsAreReorderedButNeitherLostNorChanged) {
     return unsorted;
   };
   const SizedFacets before = sorted(facets);
-  const SizedFacets after = sorted(tree.facets());
+  const SizedFacets after = sorted({tree.facets().begin(), tree.facets().end()});
   ASSERT_EQ(after.size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     ASSERT_EQ(after[i].start_size, before[i].start_size) << "seed " << seed;
@@ -521,7 +521,7 @@ TEST(FacetTree, NodeValuesOfTheFirstNodeAreOfAllFacets) {
 /// Compares first_hit with all facets one by one; any facet at the same distance may be named.
 void compare_first_hit(const FacetTree& tree, const Vec3& origin, const Vec3& direction,
                        double within, std::size_t modulus, const std::string& text) {
-  const SizedFacets& facets = tree.facets();
+  const SizedFacets facets(tree.facets().begin(), tree.facets().end());
   const auto accepts = [&](std::size_t i) { return tree.original_index(i) % modulus != 0; };
   double expected = within;
   for (std::size_t i = 0; i < facets.size(); ++i) {
@@ -646,7 +646,7 @@ TEST(FacetTree, NoRaySlipsOutOfAClosedSurface) {
 }
 
 TEST(FacetTree, EmptyTreeAnswersEveryQuery) {
-  const FacetTree tree({});
+  const FacetTree tree(SizedFacets{});
   const auto all = [](std::size_t) { return true; };
   const auto none = [](std::size_t) { return FacetTree::infinity; };
   EXPECT_EQ(tree.first_hit({0, 0, 0}, {0, 0, 1}, 5.0, all).distance, 5.0);

@@ -29,7 +29,11 @@ struct Tree {
   explicit Tree(SizedFacets from) : facets(std::move(from)), layout(layout_tree(facets, 1)) {}
 
   simd::WideTree view() const {
-    return {layout.nodes.data(), layout.slopes.data(), layout.blocks.data()};
+    simd::WideTree view;
+    view.nodes = layout.nodes.data();
+    view.slopes = layout.slopes.data();
+    view.blocks = layout.blocks.data();
+    return view;
   }
   Vec3 scaled(const Vec3& p) const { return (p - layout.centre) / layout.unit; }
 };

@@ -1,0 +1,346 @@
+#include "field_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "checked_blocks.h"
+#include "error.h"
+#include "graded_sphere.h"
+#include "random_facets.h"
+
+namespace meshgrow {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Entity volume = {3, 1};
+const Entity surface = {2, 1};
+const Entity other_volume = {3, 2};
+const Entity other_surface = {2, 2};
+
+/// A ball and a cube beside it that share nothing.
+Topology ball_and_cube() {
+  Topology topology;
+  topology.add_entity(surface, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
+  topology.add_entity(volume, {surface}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
+  topology.add_entity(other_surface, {}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
+  topology.add_entity(other_volume, {other_surface}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
+  topology.add_physical_group({2, 5, "the \"wall\" ü", {surface}});
+  return topology;
+}
+
+SizeFunction mesh_function() {
+  SizeFunction function;
+  function.kind = Kind::mesh;
+  function.sources = {surface};
+  function.attachments = {volume};
+  function.growth_rate = 1.2345678901234567;
+  function.size_limit = 0.7;
+  return function;
+}
+
+/// The sphere's mesh grows into the first volume; a fixed function is without effect in the second.
+SizeField ball_field(std::size_t triangles, Evaluator evaluator = Evaluator::grid) {
+  FieldOptions options;
+  options.evaluator = evaluator;
+  SizeField field(ball_and_cube(), options);
+  field.add(mesh_function());
+  SizeFunction other = mesh_function();
+  other.kind = Kind::fixed;
+  other.start_size = 0.1;
+  other.sources = {other_surface};
+  other.attachments = {other_volume};
+  field.add(other);
+  FacetedSource source;
+  source.entity = surface;
+  source.triangles = test::graded_sphere(triangles, 10.0);
+  field.set_sources(0, {source});
+  field.build_grids();
+  return field;
+}
+
+/// A folder of its own, gone at the end.
+class FieldFile : public testing::Test {
+ protected:
+  FieldFile() {
+    std::string name = (fs::temp_directory_path() / "field_fileXXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~FieldFile() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+std::string read(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::uint64_t number_at(const std::string& bytes, std::size_t place) {
+  std::uint64_t result = 0;
+  std::memcpy(&result, bytes.data() + place, sizeof(result));
+  return result;
+}
+
+std::vector<Vec3> random_points(test::Random& random, std::size_t count) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 direction = test::random_in_ball(random, 1.0);
+    points.push_back(i % 3 == 0   ? Vec3(3.0 * direction)
+                     : i % 3 == 1 ? Vec3(direction.normalized() * (1.0 + 1e-3 * direction.x()))
+                                  : Vec3(1e6 * direction));
+  }
+  return points;
+}
+
+/// Asks both for all there is to ask; identical to the bit.
+void expect_equal_answers(const SizeField& a, const SizeField& b, unsigned seed) {
+  test::Random random(seed);
+  const std::vector<Vec3> points = random_points(random, 3000);
+  std::vector<double> from_a(points.size());
+  std::vector<double> from_b(points.size());
+  for (const Entity& entity : {surface, volume, other_surface, other_volume, Entity{1, 77}}) {
+    ASSERT_EQ(a.acts_on(entity), b.acts_on(entity));
+    a.sizes(entity, points.data(), points.size(), from_a.data());
+    b.sizes(entity, points.data(), points.size(), from_b.data());
+    ASSERT_EQ(from_a, from_b) << "seed " << seed;
+    a.exact_sizes(entity, points.data(), points.size(), from_a.data());
+    b.exact_sizes(entity, points.data(), points.size(), from_b.data());
+    ASSERT_EQ(from_a, from_b) << "seed " << seed;
+    for (std::size_t i = 0; i < points.size(); i += 7) {
+      ASSERT_EQ(a.size(entity, points[i]), b.size(entity, points[i])) << "seed " << seed;
+    }
+  }
+}
+
+std::string sentence_of_loading(const std::string& path) {
+  try {
+    load_field(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// What is said when every size of the loaded field is asked for; "" if nothing.
+std::string sentence_of_using(const std::string& path) {
+  try {
+    const SizeField field = load_field(path);
+    test::Random random(1);
+    for (const Vec3& p : random_points(random, 3000)) {
+      field.size(volume, p);
+      field.exact_size(volume, p);
+    }
+    save_field(field, path + ".again");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(FieldFile, AnswersTheSameToTheBitWithAndWithoutGrids) {
+  for (const Evaluator evaluator : {Evaluator::grid, Evaluator::automatic, Evaluator::exact}) {
+    const SizeField field = ball_field(3000, evaluator);
+    save_field(field, path("a.mgf"));
+    const SizeField loaded = load_field(path("a.mgf"));
+    expect_equal_answers(field, loaded, 7);
+    EXPECT_EQ(loaded.groups()[0].has_grid, evaluator != Evaluator::exact);
+  }
+}
+
+TEST_F(FieldFile, KeepsFunctionsGroupsAndModel) {
+  const SizeField field = ball_field(2000);
+  save_field(field, path("a.mgf"));
+  const SizeField loaded = load_field(path("a.mgf"));
+  EXPECT_EQ(loaded.summary(), field.summary());
+  ASSERT_EQ(loaded.functions().size(), 2u);
+  EXPECT_EQ(loaded.functions()[0].growth_rate, 1.2345678901234567);
+  EXPECT_TRUE(loaded.is_effective(0));
+  EXPECT_FALSE(loaded.is_effective(1));
+  EXPECT_EQ(loaded.options().tolerance, field.options().tolerance);
+  ASSERT_EQ(loaded.topology().physical_groups().size(), 1u);
+  EXPECT_EQ(loaded.topology().physical_groups()[0].name, "the \"wall\" ü");
+  EXPECT_EQ(loaded.topology().entities(), field.topology().entities());
+}
+
+TEST_F(FieldFile, SavingAgainGivesTheSameBytes) {
+  const SizeField field = ball_field(2000);
+  save_field(field, path("a.mgf"));
+  save_field(field, path("b.mgf"));
+  save_field(load_field(path("a.mgf")), path("c.mgf"));
+  const std::string bytes = read(path("a.mgf"));
+  EXPECT_EQ(bytes.substr(0, 8), "\x89MGF\r\n\x1a\n");
+  EXPECT_EQ(number_at(bytes, 16), bytes.size());
+  EXPECT_TRUE(bytes == read(path("b.mgf")));
+  EXPECT_TRUE(bytes == read(path("c.mgf")));
+  EXPECT_TRUE(is_field_file(path("a.mgf")));
+}
+
+TEST_F(FieldFile, AFieldThatIsNotBuiltIsNotSaved) {
+  SizeField field(ball_and_cube());
+  field.add(mesh_function());
+  EXPECT_THROW(save_field(field, path("a.mgf")), Error);
+  EXPECT_FALSE(fs::exists(path("a.mgf")));
+}
+
+TEST_F(FieldFile, AFileThatCannotBeWrittenIsNamed) {
+  const SizeField field = ball_field(500);
+  try {
+    save_field(field, path("missing/a.mgf"));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("missing/a.mgf (No such file"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(FieldFile, ForeignFilesGetOneSentence) {
+  EXPECT_NE(sentence_of_loading(path("none.mgf")).find("Cannot read"), std::string::npos);
+  EXPECT_NE(sentence_of_loading(folder_.string()).find("directory"), std::string::npos);
+  for (const std::string& bytes :
+       {std::string(), std::string("\x89"), std::string("$MeshFormat\n4.1 0 8\n"),
+        std::string(5000, '\0'), std::string("\x89MGF\n\x1a\n") + std::string(100, 'x')}) {
+    write(path("foreign.mgf"), bytes);
+    EXPECT_NE(sentence_of_loading(path("foreign.mgf")).find("no size field"), std::string::npos);
+    EXPECT_FALSE(is_field_file(path("foreign.mgf")));
+  }
+}
+
+TEST_F(FieldFile, TruncatedFilesGetOneSentence) {
+  save_field(ball_field(500), path("a.mgf"));
+  const std::string bytes = read(path("a.mgf"));
+  for (std::size_t size = 8; size < bytes.size(); size = size < 100 ? size + 1 : size * 5 / 4) {
+    write(path("cut.mgf"), bytes.substr(0, size));
+    const std::string sentence = sentence_of_loading(path("cut.mgf"));
+    EXPECT_NE(sentence.find("truncated"), std::string::npos) << size << ": " << sentence;
+  }
+  write(path("long.mgf"), bytes + "x");
+  EXPECT_NE(sentence_of_loading(path("long.mgf")), "");
+}
+
+TEST_F(FieldFile, AnotherVersionIsNamed) {
+  save_field(ball_field(500), path("a.mgf"));
+  std::string bytes = read(path("a.mgf"));
+  bytes[8] = 2;
+  write(path("a.mgf"), bytes);
+  EXPECT_NE(sentence_of_loading(path("a.mgf")).find("version 2"), std::string::npos);
+}
+
+TEST_F(FieldFile, EveryDamagedByteIsNoticed) {
+  const unsigned seed = 20261125;
+  const std::string good = path("a.mgf");
+  save_field(ball_field(500), good);
+  const std::string bytes = read(good);
+  ASSERT_EQ(sentence_of_using(good), "");
+  test::Random random(seed);
+  const std::size_t directory = number_at(bytes, 24);
+  for (int i = 0; i < 400; ++i) {
+    // Half of them where the file is described, one bit each.
+    const std::size_t place = i % 4 == 0 ? test::random_index(random, 64)
+                              : i % 4 == 1
+                                  ? directory + test::random_index(random, bytes.size() - directory)
+                                  : test::random_index(random, directory);
+    std::string damaged = bytes;
+    damaged[place] = static_cast<char>(damaged[place] ^ 1 << test::random_index(random, 8));
+    write(path("damaged.mgf"), damaged);
+    const std::string sentence = sentence_of_using(path("damaged.mgf"));
+    const bool is_gap = place >= 64 && place < directory;  // arrays begin at multiples of 64
+    EXPECT_TRUE(!sentence.empty() || is_gap) << place << ", seed " << seed;
+    if (sentence.empty()) {
+      // In a gap: written again as zeros.
+      EXPECT_TRUE(read(path("damaged.mgf.again")) == bytes) << place << ", seed " << seed;
+    }
+    fs::remove(path("damaged.mgf.again"));
+  }
+}
+
+TEST_F(FieldFile, SoundChecksumsDoNotExcuseImpossibleNumbers) {
+  // The first node's children are set to a node that there is not, and all checksums made good.
+  save_field(ball_field(500), path("a.mgf"));
+  const SizeField field = load_field(path("a.mgf"));
+  const std::string bytes = read(path("a.mgf"));
+  const StoredTree& tree = field.parts().groups[0].tree->stored();
+  const std::string node(reinterpret_cast<const char*>(tree.nodes.data()), sizeof(simd::WideNode));
+  const std::size_t place = bytes.find(node);
+  ASSERT_NE(place, std::string::npos);
+  std::string crafted = bytes;
+  const std::uint32_t beyond = 0x00FFFFFF;
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    std::memcpy(&crafted[place + sizeof(simd::WideNode) - 32 + 4 * lane], &beyond, 4);
+  }
+  const auto replace = [&crafted](std::uint64_t from, std::uint64_t to) {
+    const std::string old(reinterpret_cast<const char*>(&from), 8);
+    const std::size_t at = crafted.find(old, number_at(crafted, 24));
+    ASSERT_NE(at, std::string::npos);
+    std::memcpy(&crafted[at], &to, 8);
+  };
+  replace(block_checksums(tree.nodes.data(), tree.nodes.size(), sizeof(simd::WideNode))[0],
+          block_checksums(crafted.data() + place, tree.nodes.size(), sizeof(simd::WideNode))[0]);
+  const std::uint64_t directory = number_at(crafted, 24);
+  const std::uint64_t sum = checksum(crafted.data() + directory, crafted.size() - directory);
+  std::memcpy(&crafted[40], &sum, 8);
+  const std::uint64_t header_sum = checksum(crafted.data(), 56);
+  std::memcpy(&crafted[56], &header_sum, 8);
+  write(path("crafted.mgf"), crafted);
+  const std::string sentence = sentence_of_using(path("crafted.mgf"));
+  EXPECT_NE(sentence.find("nodes is damaged"), std::string::npos) << sentence;
+}
+
+TEST_F(FieldFile, BlocksAreCheckedWhenTouchedAndNotBefore) {
+  save_field(ball_field(20000), path("a.mgf"));
+  const std::string bytes = read(path("a.mgf"));
+  const SizeField whole = load_field(path("a.mgf"));
+  const SizeField::Parts parts = whole.parts();
+  const StoredArray<GridCorners>& corners = parts.groups[0].grid->stored().corners;
+  ASSERT_GT(corners.size(), 5000u);
+  const std::string last(reinterpret_cast<const char*>(&corners[corners.size() - 1]),
+                         sizeof(GridCorners));
+  const std::size_t place = bytes.rfind(last);
+  ASSERT_NE(place, std::string::npos);
+  std::string damaged = bytes;
+  damaged[place] = static_cast<char>(damaged[place] ^ 1);
+  write(path("damaged.mgf"), damaged);
+  const SizeField field = load_field(path("damaged.mgf"));
+  const SizeField::Parts damaged_parts = field.parts();
+  const StoredArray<GridCorners>& damaged_corners = damaged_parts.groups[0].grid->stored().corners;
+  EXPECT_EQ(damaged_corners[0], corners[0]);
+  EXPECT_THROW(damaged_corners[corners.size() - 1], Error);
+  EXPECT_THROW(damaged_corners[corners.size() - 1], Error);  // and again
+  EXPECT_EQ(damaged_corners[1], corners[1]);
+}
+
+TEST_F(FieldFile, ThreadsMayTouchTheSameBlocks) {
+  const SizeField field = ball_field(3000);
+  save_field(field, path("a.mgf"));
+  test::Random random(3);
+  const std::vector<Vec3> points = random_points(random, 2000);
+  for (int round = 0; round < 10; ++round) {
+    const SizeField loaded = load_field(path("a.mgf"));
+    int different = 0;
+#pragma omp parallel for num_threads(4) reduction(+ : different)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      different += loaded.size(volume, points[i]) != field.size(volume, points[i]) ? 1 : 0;
+    }
+    ASSERT_EQ(different, 0);
+  }
+}
+
+}  // namespace
+}  // namespace meshgrow
