@@ -59,6 +59,7 @@ class Writer {
     topology(field.topology);
     directory_.count(field.functions.size());
     for (std::size_t i = 0; i < field.functions.size(); ++i) {
+      directory_.text(field.functions[i].name);
       directory_.text(size_function_text(field.functions[i]));
       directory_.number<std::uint8_t>(field.effective[i] ? 1 : 0);
       directory_.count(field.facet_counts[i]);
@@ -141,6 +142,7 @@ class Writer {
     }
     entities(part.entities);
     directory_.number(part.size_limit);
+    directory_.number(part.tree_seconds);
     const StoredTree& tree = part.tree->stored();
     box(tree.box);
     vector(tree.centre);
@@ -252,9 +254,11 @@ class Reader {
     directory_.text();  // who wrote it is for people
     result.tolerance = directory_.number<double>();
     result.topology = topology();
-    const std::size_t functions = directory_.count_of(17);
+    const std::size_t functions = directory_.count_of(25);
     for (std::size_t i = 0; i < functions; ++i) {
+      const std::string name = directory_.text();
       result.functions.push_back(parse_size_function(directory_.text(), result.topology));
+      result.functions.back().name = name;
       result.effective.push_back(directory_.number<std::uint8_t>() != 0);
       result.facet_counts.push_back(directory_.count());
     }
@@ -328,6 +332,7 @@ class Reader {
     }
     result.entities = entities();
     result.size_limit = directory_.number<double>();
+    result.tree_seconds = directory_.number<double>();
     where_ = path_ + ", group " + std::to_string(index + 1);
     result.tree = std::make_shared<FacetTree>(tree());
     if (directory_.number<std::uint8_t>() != 0) {

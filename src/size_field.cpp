@@ -24,22 +24,94 @@ std::string SizeField::function_name(std::size_t function) const {
   return meshgrow::function_name(functions_[function], function);
 }
 
+void SizeField::check_name(const std::string& name, std::size_t but_for) const {
+  if (is_number_name(name) || name.find('"') != std::string::npos) {
+    throw Error("A size function cannot have the name '" + name +
+                "': give one that is not a number and has no quotes.");
+  }
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    if (i != but_for && functions_[i].name == name) {
+      throw Error("There is a size function \"" + name +
+                  "\" already: choose another name, or modify that one.");
+    }
+  }
+}
+
 std::size_t SizeField::add(SizeFunction function) {
-  validate(function, meshgrow::function_name(function, functions_.size()), topology_);
+  if (!function.name.empty()) {
+    check_name(function.name, functions_.size());
+  }
+  const std::size_t number = numbers_given_ + 1;
+  validate(function, meshgrow::function_name(function, number - 1), topology_);
+  topology_.closure(function.attachments);  // throws if a boundary is not in the model
+  topology_.closure(function.sources);
+  if (function.name.empty()) {
+    function.name = std::to_string(number);
+  }
   functions_.push_back(std::move(function));
   facets_.emplace_back();
   facet_counts_.push_back(0);
   effective_.push_back(false);
-  try {
-    regroup();
-  } catch (...) {
-    functions_.pop_back();
-    facets_.pop_back();
-    facet_counts_.pop_back();
-    effective_.pop_back();
-    throw;
-  }
+  regroup();
+  numbers_given_ = number;
   return functions_.size() - 1;
+}
+
+void SizeField::modify(std::size_t function, SizeFunction definition) {
+  if (definition.name.empty()) {
+    definition.name = functions_[function].name;
+  } else if (definition.name != functions_[function].name) {
+    check_name(definition.name, function);
+  }
+  validate(definition, meshgrow::function_name(definition, function), topology_);
+  topology_.closure(definition.attachments);
+  topology_.closure(definition.sources);
+  functions_[function] = std::move(definition);
+  facets_[function].clear();
+  facet_counts_[function] = 0;
+  effective_[function] = false;
+  mark_changed(function);
+  regroup();
+}
+
+void SizeField::remove(std::size_t function) {
+  const auto at = static_cast<std::ptrdiff_t>(function);
+  functions_.erase(functions_.begin() + at);
+  facets_.erase(facets_.begin() + at);
+  facet_counts_.erase(facet_counts_.begin() + at);
+  effective_.erase(effective_.begin() + at);
+  const auto is_removed = [function](const Action& action) { return action.function == function; };
+  groups_.erase(std::remove_if(groups_.begin(), groups_.end(),
+                               [&](const Group& group) {
+                                 return std::any_of(group.actions.begin(), group.actions.end(),
+                                                    is_removed);
+                               }),
+                groups_.end());
+  for (Group& group : groups_) {
+    for (Action& action : group.actions) {
+      action.function -= action.function > function ? 1 : 0;
+    }
+  }
+  regroup();
+}
+
+void SizeField::rename(std::size_t function, const std::string& name) {
+  if (name != functions_[function].name) {
+    check_name(name, function);
+    functions_[function].name = name;
+  }
+}
+
+std::size_t SizeField::find(const std::string& name) const {
+  std::string names;
+  for (std::size_t i = 0; i < functions_.size(); ++i) {
+    if (functions_[i].name == name) {
+      return i;
+    }
+    names += (i == 0 ? "\"" : ", \"") + functions_[i].name + '"';
+  }
+  throw Error("There is no size function \"" + name +
+              "\": " + (names.empty() ? "add one first." : "give one of " + names + "."));
 }
 
 void SizeField::regroup() {
@@ -129,6 +201,10 @@ void SizeField::set_facets(std::size_t function, SizedFacets facets) {
   facets_[function] = std::move(facets);
   facet_counts_[function] = facets_[function].size();
   effective_[function] = effective;
+  mark_changed(function);
+}
+
+void SizeField::mark_changed(std::size_t function) {
   for (Group& group : groups_) {
     for (const Action& action : group.actions) {
       group.changed = group.changed || action.function == function;
@@ -386,8 +462,8 @@ SizeField::Parts SizeField::parts() const {
     if (group.changed || !group.tree) {
       throw Error("The size field has changed since it was built: build it before saving it.");
     }
-    parts.groups.push_back(
-        {group.actions, group.entities, group.size_limit, group.tree, group.grid});
+    parts.groups.push_back({group.actions, group.entities, group.size_limit, group.tree,
+                            group.tree_seconds, group.grid});
   }
   return parts;
 }
@@ -409,6 +485,7 @@ SizeField::SizeField(Parts parts)
     group.changed = false;
     group.size_limit = part.size_limit;
     group.tree = std::move(part.tree);
+    group.tree_seconds = part.tree_seconds;
     group.grid = std::move(part.grid);
     groups_.push_back(std::move(group));
   }

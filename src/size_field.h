@@ -54,9 +54,24 @@ class SizeField {
 
   explicit SizeField(Topology topology, FieldOptions options = {});
 
-  /// Checks and adds a function; returns its index. Throws Error and adds nothing if it is
-  /// unusable.
+  /// Checks and adds a function; returns its index. One without a name gets the next number. Throws
+  /// Error and adds nothing if it is unusable or another one has its name.
   std::size_t add(SizeFunction function);
+
+  /// Puts another definition in the place of a function, under its name unless it brings one. It
+  /// has no sources until it is given them. Groups on which it does not act keep what is built.
+  /// Throws Error and changes nothing if the definition is unusable.
+  void modify(std::size_t function, SizeFunction definition);
+
+  /// The functions behind it move up by one index. Groups on which it did not act keep what is
+  /// built.
+  void remove(std::size_t function);
+
+  /// Throws Error if another function has the name, or it is a number.
+  void rename(std::size_t function, const std::string& name);
+
+  /// The index of the function with this name. Throws Error, listing the names, if there is none.
+  std::size_t find(const std::string& name) const;
 
   const std::vector<SizeFunction>& functions() const { return functions_; }
   const Topology& topology() const { return topology_; }
@@ -145,6 +160,7 @@ class SizeField {
     std::vector<Entity> entities;
     double size_limit = no_size;
     std::shared_ptr<const FacetTree> tree;
+    double tree_seconds = 0.0;
     std::shared_ptr<const BackgroundGrid> grid;  ///< null if there is none
   };
   struct Parts {
@@ -183,6 +199,8 @@ class SizeField {
   };
 
   void regroup();
+  void check_name(const std::string& name, std::size_t but_for) const;
+  void mark_changed(std::size_t function);
   void set_facets(std::size_t function, SizedFacets facets);
   void build_tree(Group& group) const;
   void build_grid(std::size_t index, Group& group) const;
@@ -199,6 +217,7 @@ class SizeField {
   Topology topology_;
   FieldOptions options_;
   std::vector<SizeFunction> functions_;
+  std::size_t numbers_given_ = 0;
   std::vector<SizedFacets> facets_;
   std::vector<std::size_t> facet_counts_;
   std::vector<bool> effective_;

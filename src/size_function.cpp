@@ -110,10 +110,17 @@ std::vector<GapRegion> gap_regions(const SizeFunction& function, const Topology&
   return regions;
 }
 
+bool is_number_name(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+}
+
 std::string function_name(const SizeFunction& function, std::size_t index) {
   std::string name = kind_name(function.kind);
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name + " size function " + std::to_string(index + 1);
+  const std::string own = function.name.empty()           ? std::to_string(index + 1)
+                          : is_number_name(function.name) ? function.name
+                                                          : '"' + function.name + '"';
+  return name + " size function " + own;
 }
 
 void validate(const SizeFunction& function, const std::string& name, const Topology& topology) {

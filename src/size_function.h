@@ -34,6 +34,7 @@ enum class GapsBetween {
 /// One definition of a size function (paper, section 2).
 struct SizeFunction {
   Kind kind = Kind::mesh;
+  std::string name;  ///< of this one among those of a field; empty: the field gives it a number
   /// mesh: curves, surfaces; fixed: also points and volumes; curvature and proximity: curves,
   /// surfaces, and volumes, which stand for their faces.
   std::vector<Entity> sources;
@@ -61,7 +62,11 @@ struct GapRegion {
 };
 std::vector<GapRegion> gap_regions(const SizeFunction& function, const Topology& topology);
 
-/// "Mesh size function 1", as messages name the function with this index.
+/// Whether a field gave the name: digits alone.
+bool is_number_name(const std::string& name);
+
+/// "Mesh size function 1" or "Mesh size function "inner"", as messages name it; the function with
+/// this index, if it has no name yet.
 std::string function_name(const SizeFunction& function, std::size_t index);
 
 /// Throws Error with one sentence, beginning with `name`, unless the parameters are usable, all

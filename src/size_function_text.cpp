@@ -31,13 +31,13 @@ const Choices<GapsBetween> between_words = {
 std::vector<std::string> words_of(Kind kind) {
   switch (kind) {
     case Kind::mesh:
-      return {"source", "attach", "growth", "limit", "quad_size"};
+      return {"source", "attach", "growth", "limit", "quad_size", "name"};
     case Kind::fixed:
-      return {"source", "attach", "size", "growth", "limit"};
+      return {"source", "attach", "size", "growth", "limit", "name"};
     case Kind::curvature:
-      return {"source", "attach", "angle", "growth", "limit", "min"};
+      return {"source", "attach", "angle", "growth", "limit", "min", "name"};
     default:
-      return {"source", "attach", "cells", "between", "growth", "limit", "min"};
+      return {"source", "attach", "cells", "between", "growth", "limit", "min", "name"};
   }
 }
 
@@ -144,6 +144,8 @@ class Parser {
       has_growth_ = true;
     } else if (word == "limit") {
       function_.size_limit = parse_number("a size limit");
+    } else if (word == "name") {
+      function_.name = parse_function_name();
     } else {
       return false;
     }
@@ -287,6 +289,24 @@ class Parser {
     return name;
   }
 
+  std::string parse_function_name() {
+    skip_space();
+    const std::size_t begin = position_;
+    const bool quoted = accept('"');
+    std::string name;
+    while (position_ < text_.size() &&
+           (quoted ? text_[position_] != '"'
+                   : std::isspace(static_cast<unsigned char>(text_[position_])) == 0)) {
+      name += text_[position_++];
+    }
+    const bool closed = !quoted || accept('"');
+    if (!closed || name.empty() || is_number_name(name)) {
+      position_ = begin;
+      fail("a name that is not a number");
+    }
+    return name;
+  }
+
   void parse_physical_item(int dim, std::vector<Entity>& entities) {
     if (accept(':')) {
       for (const PhysicalGroup& group : topology_.physical_groups()) {
@@ -372,7 +392,10 @@ std::string size_function_text(const SizeFunction& function) {
   return kind_name(function.kind) + " source " + selection_text(function.sources) + " attach " +
          selection_text(function.attachments) + own_text(function) + " growth " +
          exact_text(function.growth_rate) + " limit " + exact_text(function.size_limit) +
-         (has_min && function.min_size != 0.0 ? " min " + exact_text(function.min_size) : "");
+         (has_min && function.min_size != 0.0 ? " min " + exact_text(function.min_size) : "") +
+         (function.name.empty() || is_number_name(function.name)
+              ? ""
+              : " name \"" + function.name + '"');
 }
 
 std::vector<Entity> parse_entities(const std::string& text, const Topology& topology) {

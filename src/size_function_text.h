@@ -18,7 +18,7 @@ namespace meshgrow {
 ///
 /// Besides `quad_size triangles` or `sides` (mesh), `angle` in degrees (curvature, default 18),
 /// `cells` per gap (proximity, default 3), `between faces`, `edges` or `both` (proximity) and `min`
-/// (curvature, proximity) may be left out.
+/// (curvature, proximity) may be left out. `name inner` or `name "inner wall"` names the function.
 ///
 /// Entities are written as in .geo: Point, Curve (or Line), Surface, Volume with tags, ranges a:b,
 /// or : for all; Physical before them takes physical tags and names (quotes may be left out). After
@@ -28,7 +28,8 @@ namespace meshgrow {
 /// entities or physical groups that are not in the model. Thread-safe.
 SizeFunction parse_size_function(const std::string& text, const Topology& topology);
 
-/// The line of text that reads as this function, in the same numbers to the bit. Thread-safe.
+/// The line of text that reads as this function, in the same numbers to the bit; without the name
+/// if the field gave it. Thread-safe.
 std::string size_function_text(const SizeFunction& function);
 
 /// Reads entities alone, such as `Volume{2}, Physical Surface{"inlet"}`; sorted, each once.

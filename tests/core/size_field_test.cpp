@@ -219,6 +219,140 @@ TEST(SizeField, FunctionsAreNumberedByKindAndOrder) {
   EXPECT_EQ(field.functions()[1].start_size, 0.1);
 }
 
+template <typename Action>
+std::string sentence_of(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+SizeFunction named(SizeFunction function, const std::string& name) {
+  function.name = name;
+  return function;
+}
+
+TEST(SizeField, FunctionsAreFoundByTheirNames) {
+  SizeField field(two_cubes());
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.add(named(fixed_function({{0, 5}}, {right_volume}, 0.1), "rim"));
+  field.add(fixed_function({{0, 5}}, {right_volume}, 0.2));
+  EXPECT_EQ(field.find("1"), 0u);
+  EXPECT_EQ(field.find("rim"), 1u);
+  EXPECT_EQ(field.find("3"), 2u);
+  EXPECT_EQ(field.function_name(1), "Fixed size function \"rim\"");
+  EXPECT_EQ(sentence_of([&] { field.find("2"); }),
+            "There is no size function \"2\": give one of \"1\", \"rim\", \"3\".");
+  field.rename(0, "inner");
+  EXPECT_EQ(field.find("inner"), 0u);
+  field.rename(0, "inner");
+  EXPECT_NE(sentence_of([&] { field.rename(0, "rim"); }).find("\"rim\" already"),
+            std::string::npos);
+  EXPECT_NE(sentence_of([&] { field.rename(0, "7"); }).find("not a number"), std::string::npos);
+  EXPECT_NE(sentence_of([&] { field.add(named(field.functions()[0], "rim")); }).find("already"),
+            std::string::npos);
+  EXPECT_EQ(field.functions().size(), 3u);
+}
+
+TEST(SizeField, NumbersOfRemovedFunctionsAreNotGivenAgain) {
+  SizeField field(two_cubes());
+  for (int i = 0; i < 3; ++i) {
+    field.add(fixed_function({{0, 1}}, {left_volume}, 0.1));
+  }
+  field.remove(1);
+  field.remove(field.find("3"));
+  field.add(fixed_function({{0, 1}}, {left_volume}, 0.1));
+  ASSERT_EQ(field.functions().size(), 2u);
+  EXPECT_EQ(field.functions()[0].name, "1");
+  EXPECT_EQ(field.functions()[1].name, "4");
+  EXPECT_EQ(field.function_name(1), "Fixed size function 4");
+}
+
+/// Three functions with sources: 0 on the left, 1 on both, 2 on the lone cube.
+SizeField three_functions() {
+  FieldOptions options;
+  options.evaluator = Evaluator::grid;
+  SizeField field(two_cubes(), options);
+  field.add(mesh_function({left_end}, {left_volume}));
+  field.add(mesh_function({right_end}, {left_volume, right_volume}));
+  field.add(mesh_function({lone_surface}, {lone_volume}));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 8)});
+  field.set_sources(1, {end_mesh(right_end, 2.0, 4)});
+  field.set_sources(2, {end_mesh(lone_surface, 5.0, 4)});
+  field.build();
+  return field;
+}
+
+std::shared_ptr<const FacetTree> tree_of(const SizeField& field, const Entity& entity) {
+  for (const SizeField::Part& part : field.parts().groups) {
+    if (std::count(part.entities.begin(), part.entities.end(), entity) > 0) {
+      return part.tree;
+    }
+  }
+  return nullptr;
+}
+
+TEST(SizeField, RemovingAFunctionLeavesWhatTheOthersAskFor) {
+  SizeField field = three_functions();
+  const std::shared_ptr<const FacetTree> lone = tree_of(field, lone_volume);
+  const std::shared_ptr<const FacetTree> right = tree_of(field, right_volume);
+  field.remove(0);
+  field.build();
+  EXPECT_EQ(tree_of(field, lone_volume), lone) << "built again, though nothing changed there";
+  SizeField expected(two_cubes(), field.options());
+  expected.add(mesh_function({right_end}, {left_volume, right_volume}));
+  expected.add(mesh_function({lone_surface}, {lone_volume}));
+  expected.set_sources(0, {end_mesh(right_end, 2.0, 4)});
+  expected.set_sources(1, {end_mesh(lone_surface, 5.0, 4)});
+  expected.build();
+  for (const Entity& entity : {left_volume, right_volume, lone_volume, middle, left_end}) {
+    for (const double x : {0.0, 0.3, 1.2, 1.9, 5.5}) {
+      EXPECT_EQ(field.size(entity, {x, 0.4, 0.3}), expected.size(entity, {x, 0.4, 0.3}));
+    }
+    EXPECT_EQ(field.functions_on(entity), expected.functions_on(entity));
+  }
+  while (!field.functions().empty()) {
+    field.remove(0);
+  }
+  EXPECT_FALSE(field.acts_on(lone_volume));
+  EXPECT_EQ(field.size(lone_volume, {5.5, 0.5, 0.5}), infinite);
+}
+
+TEST(SizeField, ModifyingAFunctionRebuildsOnlyTheGroupsItActsOn) {
+  SizeField field = three_functions();
+  const std::shared_ptr<const FacetTree> lone = tree_of(field, lone_volume);
+  const std::shared_ptr<const FacetTree> right = tree_of(field, right_volume);
+  SizeFunction faster = field.functions()[0];
+  faster.growth_rate = 2.0;
+  field.modify(0, faster);
+  EXPECT_FALSE(field.is_effective(0));
+  field.set_sources(0, {end_mesh(left_end, 0.0, 8)});
+  field.build();
+  EXPECT_EQ(tree_of(field, lone_volume), lone);
+  EXPECT_EQ(tree_of(field, right_volume), right);
+  const double s0 = (0.125 + 0.125 + 0.125 * std::sqrt(2.0)) / 3.0;
+  EXPECT_NEAR(field.exact_size(left_volume, {0.2, 0.5, 0.5}), s0 + 0.5 * 0.2, 1e-12);
+
+  // Attached elsewhere: it leaves the left and comes to the right.
+  SizeFunction moved = faster;
+  moved.attachments = {lone_volume};
+  moved.name = "moved";
+  field.modify(0, moved);
+  field.set_sources(0, {end_mesh(left_end, 0.0, 8)});
+  field.build();
+  EXPECT_EQ(field.functions_on(lone_volume), (Indices{0, 2}));
+  EXPECT_EQ(field.functions_on(left_volume), (Indices{1}));
+  EXPECT_EQ(field.find("moved"), 0u);
+
+  SizeFunction bad = moved;
+  bad.growth_rate = 0.5;
+  EXPECT_NE(sentence_of([&] { field.modify(0, bad); }).find("\"moved\""), std::string::npos);
+  EXPECT_EQ(field.functions()[0].growth_rate, 2.0);
+  EXPECT_TRUE(field.is_effective(0));
+}
+
 TEST(SizeField, UnusableFunctionIsNamedAndNotAdded) {
   SizeField field(two_cubes());
   field.add(mesh_function({left_end}, {left_volume}));

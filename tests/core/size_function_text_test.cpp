@@ -377,14 +377,32 @@ TEST(SizeFunctionText, MistakesInWhatOnlySomeKindsHave) {
   expect_error_at("curvature" + rest + "min ^", "smallest size");
   expect_error_at("proximity" + rest + "cells ^three", "number of cells");
   expect_error_at("proximity" + rest + "between ^walls", "'faces', 'edges' or 'both'");
-  const std::string curvature_words = "'source', 'attach', 'angle', 'growth', 'limit' or 'min'";
+  const std::string curvature_words =
+      "'source', 'attach', 'angle', 'growth', 'limit', 'min' or 'name'";
   expect_error_at("curvature" + rest + "^cells 3", curvature_words);
   expect_error_at("curvature" + rest + "^size 3", curvature_words);
   expect_error_at("curvature" + rest + "^quad_size sides", curvature_words);
   expect_error_at("proximity" + rest + "^angle 3",
-                  "'source', 'attach', 'cells', 'between', 'growth', 'limit' or 'min'");
-  expect_error_at("fixed" + rest + "^min 3", "'size', 'growth' or 'limit'");
-  expect_error_at("mesh" + rest + "^angle 3", "'growth', 'limit' or 'quad_size'");
+                  "'source', 'attach', 'cells', 'between', 'growth', 'limit', 'min' or 'name'");
+  expect_error_at("fixed" + rest + "^min 3", "'size', 'growth', 'limit' or 'name'");
+  expect_error_at("mesh" + rest + "^angle 3", "'growth', 'limit', 'quad_size' or 'name'");
+}
+
+TEST(SizeFunctionText, NamesAreKept) {
+  const Topology topology = model();
+  const std::string rest = "fixed source Surface{7} attach Volume{2} size 0.1 growth 1.2 limit 2";
+  EXPECT_EQ(parse_size_function(rest, topology).name, "");
+  EXPECT_EQ(parse_size_function(rest + " name inner-1", topology).name, "inner-1");
+  EXPECT_EQ(parse_size_function("fixed name \"in ner\"" + rest.substr(5), topology).name, "in ner");
+  SizeFunction function = parse_size_function(rest + " name \"in ner\"", topology);
+  EXPECT_EQ(size_function_text(function), rest + " name \"in ner\"");
+  function.name = "12";
+  EXPECT_EQ(size_function_text(function), rest);
+  const std::string wanted = "a name that is not a number";
+  expect_error_at(rest + " name ^12", wanted);
+  expect_error_at(rest + " name ^\"\"", wanted);
+  expect_error_at(rest + " name ^\"a", wanted);
+  expect_error_at(rest + " name^", wanted);
 }
 
 TEST(SizeFunctionText, MistakesInSelections) {
