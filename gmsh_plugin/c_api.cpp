@@ -15,6 +15,9 @@
 #include "size_function_text.h"
 
 struct meshgrow_field {
+  meshgrow_field() = default;
+  explicit meshgrow_field(const char* file) : model_field(std::string(file)) {}
+
   meshgrow::ModelField model_field;
 };
 
@@ -162,7 +165,8 @@ json summary_json(const meshgrow::SizeField& field) {
   json functions = json::array();
   for (size_t i = 0; i < field.functions().size(); ++i) {
     const SizeFunction& function = field.functions()[i];
-    functions.push_back({{"kind", meshgrow::kind_name(function.kind)},
+    functions.push_back({{"name", function.name},
+                         {"kind", meshgrow::kind_name(function.kind)},
                          {"text", meshgrow::size_function_text(function)},
                          {"sources", dim_tags(function.sources)},
                          {"attachments", dim_tags(function.attachments)},
@@ -300,6 +304,52 @@ int meshgrow_field_add(meshgrow_field* field, const char* text) {
     deref(field).add(std::string(text));
     return 0;
   });
+}
+
+size_t meshgrow_field_function_count(const meshgrow_field* field) {
+  return field == nullptr ? 0 : field->model_field.field().functions().size();
+}
+
+char* meshgrow_field_function_name(const meshgrow_field* field, size_t index) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    if (index >= meshgrow_field_function_count(field)) {
+      throw Error("There is no size function with the index " + std::to_string(index) +
+                  ": give one from 0 to the count of functions less one.");
+    }
+    return copy_text(field->model_field.field().functions()[index].name);
+  });
+}
+
+int meshgrow_field_rename(meshgrow_field* field, const char* name, const char* new_name) {
+  return guarded(1, [&] {
+    deref(field).rename(name, new_name);
+    return 0;
+  });
+}
+
+int meshgrow_field_modify(meshgrow_field* field, const char* name, const char* text) {
+  return guarded(1, [&] {
+    deref(field).modify(name, text);
+    return 0;
+  });
+}
+
+int meshgrow_field_remove(meshgrow_field* field, const char* name) {
+  return guarded(1, [&] {
+    deref(field).remove(name);
+    return 0;
+  });
+}
+
+int meshgrow_field_save(meshgrow_field* field, const char* path) {
+  return guarded(1, [&] {
+    deref(field).save(path);
+    return 0;
+  });
+}
+
+meshgrow_field* meshgrow_field_load(const char* path) {
+  return guarded(static_cast<meshgrow_field*>(nullptr), [&] { return new meshgrow_field(path); });
 }
 
 int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value) {

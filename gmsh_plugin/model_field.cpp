@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "error.h"
+#include "field_file.h"
 #include "geometry_sampler.h"
 #include "gmsh_api.h"
 #include "gmsh_state.h"
+#include "mesh_fingerprint.h"
 #include "model_reader.h"
 #include "number_text.h"
 #include "ordered_mesher.h"
@@ -62,6 +64,22 @@ ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_)
   };
 }
 
+ModelField::ModelField(const std::string& file)
+    : field_(load_field(file)), answers_(field_), file_(file) {}
+
+void ModelField::check_changeable(const std::string& what) const {
+  if (!file_.empty()) {
+    throw Error("The size field of " + file_ + " cannot " + what +
+                ": make one of the model for that; this one can be asked, shown and registered.");
+  }
+}
+
+void ModelField::apply_change() {
+  if (is_registered()) {
+    refresh();
+  }
+}
+
 void ModelField::tell(const std::string& line) const {
   if (listener_) {
     listener_(line);
@@ -86,12 +104,60 @@ void ModelField::tell_grid(const std::string& what, double done) {
 }
 
 std::size_t ModelField::add(SizeFunction function) {
-  sources_read_ = false;
-  return field_.add(std::move(function));
+  check_changeable("be changed");
+  const std::size_t index = field_.add(std::move(function));
+  apply_change();
+  return index;
 }
 
 std::size_t ModelField::add(const std::string& text) {
   return add(parse_size_function(text, field_.topology()));
+}
+
+void ModelField::modify(const std::string& name, const std::string& text) {
+  check_changeable("be changed");
+  const std::size_t index = field_.find(name);
+  field_.modify(index, parse_size_function(text, field_.topology()));
+  read_as_.erase(index);
+  apply_change();
+}
+
+namespace {
+
+/// Of values by index, without the one of this index.
+template <typename Value>
+std::map<std::size_t, Value> without(const std::map<std::size_t, Value>& values,
+                                     std::size_t removed) {
+  std::map<std::size_t, Value> result;
+  for (const auto& [index, value] : values) {
+    if (index != removed) {
+      result.emplace(index > removed ? index - 1 : index, value);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void ModelField::remove(const std::string& name) {
+  check_changeable("be changed");
+  const std::size_t index = field_.find(name);
+  field_.remove(index);
+  read_as_ = without(read_as_, index);
+  late_ = without(late_, index);
+  reported_.clear();
+  apply_change();
+}
+
+void ModelField::rename(const std::string& name, const std::string& new_name) {
+  check_changeable("be changed");
+  field_.rename(field_.find(name), new_name);
+}
+
+void ModelField::save(const std::string& file) {
+  refresh_if_needed();
+  field_.build_grids();
+  save_field(field_, file);
 }
 
 void ModelField::create_defaults(std::vector<Entity> attachments, double growth_rate,
@@ -145,7 +211,12 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
   size_factor_ = gmsh::option("Mesh.MeshSizeFactor");
   const NodeCoordinates nodes;
   SourceFacets facets(field_.topology(), nodes);
+  MeshFingerprints fingerprints;
   for (const std::size_t index : functions) {
+    read_as_[index].clear();
+    for (const Entity& entity : watched(index)) {
+      read_as_[index][entity] = fingerprints.of(entity);
+    }
     switch (field_.functions()[index].kind) {
       case Kind::mesh:
         set_sources(index, read_meshed(index, nodes));
@@ -161,6 +232,46 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
         break;
     }
   }
+}
+
+std::set<Entity> ModelField::watched(std::size_t function) const {
+  const SizeFunction& definition = field_.functions()[function];
+  const Topology& topology = field_.topology();
+  std::vector<Entity> made_from = definition.sources;
+  if (definition.kind == Kind::curvature) {
+    const std::set<Entity> sources = curvature_sources(definition, topology);
+    made_from.assign(sources.begin(), sources.end());
+  } else if (definition.kind == Kind::proximity) {
+    made_from.clear();
+    for (const GapRegion& gaps : gap_regions(definition, topology)) {
+      made_from.push_back(gaps.region);
+    }
+  }
+  const int highest_read = definition.kind == Kind::proximity ? highest(made_from) - 1 : 2;
+  std::set<Entity> result;
+  for (const Entity& entity : topology.closure(made_from)) {
+    if (entity.dim >= 1 && entity.dim <= highest_read) {
+      result.insert(entity);
+    }
+  }
+  return result;
+}
+
+std::vector<std::size_t> ModelField::unread_functions() const {
+  std::vector<std::size_t> unread;
+  MeshFingerprints fingerprints;
+  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
+    const auto read_as = read_as_.find(i);
+    const bool is_mesh = field_.functions()[i].kind == Kind::mesh;
+    // Other kinds do without a mesh: one that came later is no reason to read them again.
+    if (read_as == read_as_.end() ||
+        std::any_of(read_as->second.begin(), read_as->second.end(), [&](const auto& read) {
+          return (is_mesh || read.second != 0) && fingerprints.of(read.first) != read.second;
+        })) {
+      unread.push_back(i);
+    }
+  }
+  return unread;
 }
 
 std::vector<FacetedSource> ModelField::read_fixed(std::size_t function,
@@ -242,6 +353,9 @@ void ModelField::check_model() const {
 }
 
 void ModelField::refresh() {
+  if (!file_.empty()) {
+    return;  // it has all that it will ever have
+  }
   const CurrentModel current(model_);
   read_all(is_registered());
 }
@@ -252,29 +366,60 @@ void ModelField::read_all(bool wait_for_meshes) {
   std::iota(all.begin(), all.end(), 0U);
   read_sources(all);
   reported_.clear();
-  late_.clear();
-  std::optional<NodeCoordinates> nodes;
+  expect_late_sources(wait_for_meshes);
   for (const std::size_t function : all) {
-    const std::vector<Entity> unmeshed = unmeshed_sources(function);
-    if (wait_for_meshes && !strict_ && !unmeshed.empty() &&
-        std::min_element(unmeshed.begin(), unmeshed.end())->dim <
-            highest(field_.functions()[function].attachments)) {
-      if (!nodes) {
-        nodes.emplace();
-      }
-      late_[function] = read_meshed(function, *nodes);
-    } else {
+    const auto late = late_.find(function);
+    if (late == late_.end() || !late->second.waits_for_meshes) {
       report_unmeshed(function);
     }
   }
   field_.build({}, wait_for_meshes ? sizes_per_tetrahedron() : 0.0);
-  sources_read_ = true;
+}
+
+void ModelField::expect_late_sources(bool wait_for_meshes) {
+  late_.clear();
+  if (!wait_for_meshes) {
+    return;
+  }
+  std::optional<NodeCoordinates> nodes;
+  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
+    const SizeFunction& function = field_.functions()[i];
+    const int before = highest(function.attachments);
+    if (function.kind != Kind::mesh ||
+        std::none_of(function.sources.begin(), function.sources.end(),
+                     [before](const Entity& source) { return source.dim < before; })) {
+      continue;
+    }
+    if (!nodes) {
+      nodes.emplace();
+    }
+    const std::vector<Entity> unmeshed = unmeshed_sources(i);
+    late_[i] = {read_meshed(i, *nodes),
+                !strict_ && std::any_of(unmeshed.begin(), unmeshed.end(),
+                                        [before](const Entity& e) { return e.dim < before; })};
+  }
 }
 
 void ModelField::read_if_needed() {
-  if (!sources_read_ || gmsh::option("Mesh.MeshSizeFactor") != size_factor_) {
-    refresh();
+  if (!file_.empty()) {
+    return;
   }
+  const CurrentModel current(model_);
+  if (gmsh::option("Mesh.MeshSizeFactor") != size_factor_ && !read_as_.empty()) {
+    refresh();
+    return;
+  }
+  const std::vector<std::size_t> unread = unread_functions();
+  if (unread.empty()) {
+    return;
+  }
+  check_model();
+  read_sources(unread);
+  for (const std::size_t function : unread) {
+    reported_.erase(function);
+    report_unmeshed(function);
+  }
+  field_.build();
 }
 
 void ModelField::refresh_if_needed() {
@@ -297,13 +442,32 @@ double ModelField::sizes_per_tetrahedron() {
 }
 
 void ModelField::register_callback() {
+  if (!file_.empty()) {
+    model_ = gmsh::current_model();
+    check_acted_on();
+  }
   const CurrentModel current(model_);
   SizeCallback::check_free_for(model_);
-  read_all(true);
+  if (file_.empty()) {
+    read_all(true);
+    set_reader();
+  }
   adapt_to_meshers();
-  set_reader();
   callback_.reset();
   callback_ = std::make_unique<SizeCallback>(answers_, model_);
+}
+
+void ModelField::check_acted_on() const {
+  gmsh::require_gmsh();
+  const std::vector<Entity> in_model = gmsh::entities();
+  for (const Entity& entity : field_.topology().entities()) {
+    if (field_.acts_on(entity) &&
+        std::find(in_model.begin(), in_model.end(), entity) == in_model.end()) {
+      throw Error("The size field of " + file_ + " acts on " + entity_name(entity) +
+                  ", which is not in the model \"" + model_ +
+                  "\": open the model it was made for.");
+    }
+  }
 }
 
 void ModelField::set_reader() {
@@ -317,20 +481,25 @@ void ModelField::unregister_callback() {
 }
 
 void ModelField::read_late_sources(int dim) {
-  for (const auto& [function, meshed_before] : late_) {
-    std::vector<FacetedSource> sources = meshed_before;
+  MeshFingerprints fingerprints;
+  for (const auto& [function, late] : late_) {
+    std::vector<FacetedSource> sources;
     for (const Entity& source : field_.functions()[function].sources) {
-      const bool known =
-          std::any_of(meshed_before.begin(), meshed_before.end(),
-                      [&source](const FacetedSource& before) { return before.entity == source; });
-      // One of this dimension may be half meshed now.
-      if (!known && source.dim < dim && gmsh::has_elements(source)) {
+      const auto before =
+          std::find_if(late.before.begin(), late.before.end(),
+                       [&source](const FacetedSource& one) { return one.entity == source; });
+      // One of this dimension may be half meshed now; one that Gmsh took the mesh from before its
+      // turn is as it was.
+      const std::uint64_t now = source.dim < dim ? fingerprints.of(source) : 0;
+      if (now != 0 && now != read_as_.at(function).at(source)) {
         sources.push_back(
             read_entity_mesh(source, NodeCoordinates(field_.topology().closure({source}))));
+      } else if (before != late.before.end()) {
+        sources.push_back(*before);
       }
     }
     set_sources(function, sources);
-    if (dim > highest(field_.functions()[function].sources)) {
+    if (late.waits_for_meshes && dim > highest(field_.functions()[function].sources)) {
       report_unmeshed(function);
     }
   }
@@ -364,6 +533,7 @@ void ModelField::adapt_to_meshers() {
 }
 
 std::vector<MeshingPass> ModelField::plan(int dim) const {
+  check_changeable("plan passes");
   const CurrentModel current(model_);
   check_model();
   std::set<Entity> meshed;
@@ -376,20 +546,24 @@ std::vector<MeshingPass> ModelField::plan(int dim) const {
 }
 
 void ModelField::generate(int dim, bool remesh) {
+  check_changeable("mesh");
   if (generating_) {
     throw Error("This size field is meshing already: wait for its end.");
   }
   const CurrentModel current(model_);
   check_model();
   generating_ = true;
-  std::map<std::size_t, std::vector<FacetedSource>> late = std::move(late_);
   late_.clear();
   const bool was_registered = is_registered();
   unregister_callback();
   const auto register_again = [&] {
     generating_ = false;
     if (was_registered) {
-      late_ = std::move(late);
+      try {
+        expect_late_sources(true);
+      } catch (...) {
+        late_.clear();  // sources are those that were read last
+      }
       set_reader();
       callback_ = std::make_unique<SizeCallback>(answers_, model_);
     }
@@ -409,7 +583,6 @@ void ModelField::generate(int dim, bool remesh) {
     throw;
   }
   register_again();
-  sources_read_ = true;
   const double element_order = gmsh::option("Mesh.ElementOrder");
   if (element_order > 1.0) {
     GmshState state;

@@ -2,6 +2,7 @@
 #define MESHGROW_MODEL_FIELD_H
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -25,12 +26,23 @@ class ModelField {
   /// Of the current model. Throws Error without libgmsh, before gmsh.initialize(), with a Gmsh
   /// older than 4.8 and for a model without entities.
   ModelField();
+  /// A saved field (field_file.h): can be asked and registered, with any model that has the
+  /// entities on which it acts, but not changed. Needs Gmsh only to be registered.
+  explicit ModelField(const std::string& file);
   ModelField(const ModelField&) = delete;
   ModelField& operator=(const ModelField&) = delete;
 
   std::size_t add(SizeFunction function);
   /// Adds a function by its one-line text (size_function_text.h).
   std::size_t add(const std::string& text);
+
+  /// See SizeField. A registered field acts as changed from then on.
+  void modify(const std::string& name, const std::string& text);
+  void remove(const std::string& name);
+  void rename(const std::string& name, const std::string& new_name);
+
+  /// Saves the field with its grids, unless the evaluator is exact.
+  void save(const std::string& file);
 
   /// Adds what suits most models: a curvature size function (18 degrees) and a proximity size
   /// function (3 cells per gap, between faces and edges) whose sources are the attachments
@@ -67,10 +79,10 @@ class ModelField {
   /// for) mesh size functions without a meshed source.
   void refresh();
 
-  /// `refresh` unless sources were read since the last function was added; builds what is not
-  /// built.
+  /// Reads the sources that were not read yet, or that were meshed anew since, and builds what is
+  /// not built.
   void refresh_if_needed();
-  /// The same, but leaves trees and grids that are out of date as they are if sources were read.
+  /// The same, but leaves trees and grids that are out of date as they are if all was read before.
   void read_if_needed();
 
   /// How many sizes Gmsh asks for, a tetrahedron, with the algorithm that is set.
@@ -95,6 +107,14 @@ class ModelField {
  private:
   friend class OrderedMesher;
 
+  void check_changeable(const std::string& what) const;
+
+  /// After a change of the definitions: a registered field acts at once.
+  void apply_change();
+
+  /// Throws Error if the model lacks an entity on which a saved field acts.
+  void check_acted_on() const;
+
   /// Throws Error if entities came or went since the field was made.
   void check_model() const;
 
@@ -106,8 +126,17 @@ class ModelField {
   void read_proximity(std::size_t function, SourceFacets& facets);
   void set_sources(std::size_t function, const std::vector<FacetedSource>& sources);
 
-  /// Within a run of Gmsh that has come to this dimension: reads the late sources of lower ones and
-  /// forgets those of earlier runs.
+  /// The entities whose meshes the function was, or would be, made from.
+  std::set<Entity> watched(std::size_t function) const;
+  /// Functions not read yet, or made from meshes that are not as they were read.
+  std::vector<std::size_t> unread_functions() const;
+
+  /// Remembers what a run of Gmsh may change about the sources of mesh size functions.
+  /// `wait_for_meshes`: as for read_all.
+  void expect_late_sources(bool wait_for_meshes);
+
+  /// Within a run of Gmsh that has come to this dimension: reads the sources of lower ones that it
+  /// has meshed, and forgets those of earlier runs.
   void read_late_sources(int dim);
 
   /// `refresh`; `wait_for_meshes`: sources without a mesh that a run of Gmsh will mesh in time are
@@ -130,9 +159,14 @@ class ModelField {
   bool strict_ = false;
   bool calibrate_ = false;
   double size_factor_ = 1.0;  ///< Mesh.MeshSizeFactor when sources were read
-  /// Functions with sources to be read within a run of Gmsh, and those that had a mesh before.
-  std::map<std::size_t, std::vector<FacetedSource>> late_;
-  bool sources_read_ = false;
+  /// The sources of mesh size functions that a run of Gmsh may mesh, as they were before.
+  struct LateSources {
+    std::vector<FacetedSource> before;
+    bool waits_for_meshes = false;  ///< some had none
+  };
+  std::map<std::size_t, LateSources> late_;
+  std::map<std::size_t, std::map<Entity, std::uint64_t>> read_as_;  ///< mesh_fingerprint.h
+  std::string file_;  ///< that it was loaded from; empty for a field of the model
   bool generating_ = false;
   std::set<std::size_t> reported_;
   ProgressListener listener_;
