@@ -293,6 +293,9 @@ void set_visible(const std::vector<Entity>& entities, bool visible) {
 }
 
 Nodes nodes(const Entity& entity) { return get_nodes(entity.dim, entity.tag, false, true); }
+Nodes nodes_without_parameters(const Entity& entity) {
+  return get_nodes(entity.dim, entity.tag, false, false);
+}
 Nodes nodes_with_boundary(const Entity& entity) {
   // 4.8 warns of each node on a seam, though it gives parameters for it.
   const double told = option(verbosity);
@@ -329,12 +332,14 @@ std::vector<Elements> elements(const Entity& entity) {
   return result;
 }
 
-bool has_elements(const Entity& entity) {
+std::vector<int> element_types(const Entity& entity) {
   GmshArray<int> types;
   library().call("gmshModelMeshGetElementTypes", types.data(), types.size(), entity.dim,
                  entity.tag);
-  return *types.size() > 0;
+  return types.copy();
 }
+
+bool has_elements(const Entity& entity) { return !element_types(entity).empty(); }
 
 void add_elements(const Entity& entity, const std::vector<Elements>& elements) {
   for (const Elements& block : elements) {

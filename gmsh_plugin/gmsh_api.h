@@ -77,6 +77,7 @@ struct Nodes {
 
 /// Nodes classified on the entity, those of its boundary not included.
 Nodes nodes(const Entity& entity);
+Nodes nodes_without_parameters(const Entity& entity);
 /// The same with those of its boundary, all with parametric coordinates on the entity: on one side
 /// of a seam only.
 Nodes nodes_with_boundary(const Entity& entity);
@@ -92,6 +93,7 @@ struct Elements {
 };
 
 std::vector<Elements> elements(const Entity& entity);
+std::vector<int> element_types(const Entity& entity);
 bool has_elements(const Entity& entity);
 void add_elements(const Entity& entity, const std::vector<Elements>& elements);
 

@@ -15,20 +15,13 @@ std::uint64_t checksum_of(const std::vector<T>& values) {
 }
 
 std::uint64_t fingerprint(const Entity& entity) {
-  const std::vector<gmsh::Elements> elements = gmsh::elements(entity);
-  std::vector<std::uint64_t> parts;
-  for (const gmsh::Elements& of_type : elements) {
-    if (!of_type.tags.empty()) {
-      parts.push_back(static_cast<std::uint64_t>(of_type.type));
-      parts.push_back(checksum_of(of_type.node_tags));
-    }
-  }
-  if (parts.empty()) {
+  const std::vector<int> types = gmsh::element_types(entity);
+  if (types.empty()) {
     return 0;
   }
-  const gmsh::Nodes nodes = gmsh::nodes(entity);
-  parts.push_back(checksum_of(nodes.tags));
-  parts.push_back(checksum_of(nodes.coordinates));
+  const gmsh::Nodes nodes = gmsh::nodes_without_parameters(entity);
+  const std::vector<std::uint64_t> parts = {checksum_of(types), checksum_of(nodes.tags),
+                                            checksum_of(nodes.coordinates)};
   return checksum_of(parts) | 1;
 }
 
