@@ -456,6 +456,17 @@ double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, doub
                           : field->model_field.answers().answer(dim, tag, x, y, z, proposed);
 }
 
+double meshgrow_field_callback(int dim, int tag, double x, double y, double z, double proposed,
+                               void* field) {
+  return field == nullptr ? proposed
+                          : static_cast<meshgrow_field*>(field)->model_field.answer_call(
+                                dim, tag, x, y, z, proposed);
+}
+
+double meshgrow_field_callback_4_8(int dim, int tag, double x, double y, double z, void* field) {
+  return meshgrow_field_callback(dim, tag, x, y, z, meshgrow::gmsh_no_size, field);
+}
+
 char* meshgrow_field_summary(meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
     deref(field).read_if_needed();
@@ -498,6 +509,18 @@ char* meshgrow_report_json(int dim, const int* entities, size_t entities_n, mesh
       };
     }
     return copy_text(to_json(meshgrow::make_report(mesh, size_asked)).dump());
+  });
+}
+
+int meshgrow_report_value(const char* report_json, const char* name, double* value) {
+  return guarded(1, [&] {
+    const json report = json::parse(report_json);
+    if (!report.contains(name)) {
+      throw Error(std::string("A report has no value \"") + name +
+                  "\": give \"elements\", \"ratio_99\" or another of its names.");
+    }
+    *value = number_or_unknown(report.at(name));
+    return 0;
   });
 }
 

@@ -13,7 +13,8 @@
  * environment variable MESHGROW_GMSH_LIB, else the usual names. 4.8 or later is needed.
  *
  * Thread safety: as Gmsh itself, one thread at a time, except meshgrow_field_size,
- * meshgrow_field_exact_size and meshgrow_field_answer on a field that is not being changed. */
+ * meshgrow_field_exact_size, meshgrow_field_answer and the callbacks on a field that is not being
+ * changed. */
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,7 +28,10 @@ extern "C" {
 
 typedef struct meshgrow_field meshgrow_field;
 
-/* "0.1.0" */
+/* Of this header, for #if: major * 10000 + minor * 100 + patch. */
+#define MESHGROW_VERSION_NUMBER 100
+
+/* Of the library that runs: "0.1.0" */
 MESHGROW_API const char* meshgrow_version(void);
 
 /* The sentence of the last failure in this thread; valid until the next call. */
@@ -162,6 +166,21 @@ MESHGROW_API int meshgrow_field_exact_size(meshgrow_field* field, int dim, int t
 MESHGROW_API double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x,
                                           double y, double z, double proposed);
 
+/* A field as a size callback of Gmsh, with the field as its data, in Gmsh 4.9 and later:
+ *
+ *   gmshModelMeshSetSizeCallback(meshgrow_field_callback, field, &ierr);
+ *
+ * and in 4.8, which passes no proposal (1e22 stands for "no size"), or called within a callback of
+ * the caller's own. The answer is that of meshgrow_field_answer. The first call reads the sources,
+ * as meshgrow_field_register does; a mesh that Gmsh throws away as it begins is taken as it was
+ * when the function was added, or at the last meshgrow_field_refresh. Where that fails, a warning
+ * in Gmsh's log says why, and the answer is the proposal. May be called from several threads; not
+ * at the same time as other functions of this field. */
+MESHGROW_API double meshgrow_field_callback(int dim, int tag, double x, double y, double z,
+                                            double proposed, void* field);
+MESHGROW_API double meshgrow_field_callback_4_8(int dim, int tag, double x, double y, double z,
+                                                void* field);
+
 /* Functions, groups and grids as text; NULL on failure. To be freed by meshgrow_free. */
 MESHGROW_API char* meshgrow_field_summary(meshgrow_field* field);
 
@@ -173,6 +192,10 @@ MESHGROW_API char* meshgrow_field_summary_json(meshgrow_field* field);
  * failure. To be freed by meshgrow_free. */
 MESHGROW_API char* meshgrow_report_json(int dim, const int* entities, size_t entities_n,
                                         meshgrow_field* field);
+
+/* One number of such a report, such as "elements", "ratio_99" or "length_median", into `value`; not
+ * a number if it could not be measured. */
+MESHGROW_API int meshgrow_report_value(const char* report_json, const char* name, double* value);
 
 /* The table of several such reports: JSON array of {"name": …, "report": …}. */
 MESHGROW_API char* meshgrow_report_table(const char* reports_json);

@@ -26,6 +26,11 @@ Topology topology_of_current_model() {
   return read_topology();
 }
 
+/// Whether a function takes the sizes of a source's mesh itself.
+bool is_read_as_meshed(const SizeFunction& function, const Entity& source) {
+  return function.kind == Kind::mesh && (source.dim == 1 || source.dim == 2);
+}
+
 int highest(const std::vector<Entity>& entities) {
   return std::max_element(entities.begin(), entities.end())->dim;
 }
@@ -74,9 +79,12 @@ void ModelField::check_changeable(const std::string& what) const {
   }
 }
 
-void ModelField::apply_change() {
+void ModelField::apply_change(std::optional<std::size_t> function) {
+  ready_for_calls_ = false;
   if (is_registered()) {
     refresh();
+  } else if (function) {
+    keep_meshed_sources(is_keeping_ ? *function : 0);
   }
 }
 
@@ -106,8 +114,31 @@ void ModelField::tell_grid(const std::string& what, double done) {
 std::size_t ModelField::add(SizeFunction function) {
   check_changeable("be changed");
   const std::size_t index = field_.add(std::move(function));
-  apply_change();
+  apply_change(index);
   return index;
+}
+
+void ModelField::keep_meshed_sources(std::size_t first_function) {
+  try {
+    const CurrentModel current(model_);
+    for (std::size_t i = first_function; i < field_.functions().size(); ++i) {
+      for (const Entity& source : field_.functions()[i].sources) {
+        if (is_read_as_meshed(field_.functions()[i], source) && kept_.count(source) == 0 &&
+            gmsh::has_elements(source) && !gmsh::is_discrete(source)) {
+          kept_[source] =
+              read_entity_mesh(source, NodeCoordinates(field_.topology().closure({source})));
+        }
+      }
+    }
+    is_keeping_ = true;
+  } catch (const Error&) {
+    // Whoever reads the sources in earnest tells what is wrong with them.
+  }
+}
+
+void ModelField::forget_kept_sources() {
+  kept_.clear();
+  is_keeping_ = false;
 }
 
 std::size_t ModelField::add(const std::string& text) {
@@ -119,7 +150,7 @@ void ModelField::modify(const std::string& name, const std::string& text) {
   const std::size_t index = field_.find(name);
   field_.modify(index, parse_size_function(text, field_.topology()));
   read_as_.erase(index);
-  apply_change();
+  apply_change(index);
 }
 
 namespace {
@@ -185,8 +216,13 @@ std::vector<FacetedSource> ModelField::read_meshed(std::size_t function,
                                                    const NodeCoordinates& nodes) const {
   std::vector<FacetedSource> result;
   for (const Entity& source : field_.functions()[function].sources) {
-    if ((source.dim == 1 || source.dim == 2) && gmsh::has_elements(source)) {
+    if (source.dim != 1 && source.dim != 2) {
+      continue;
+    }
+    if (gmsh::has_elements(source)) {
       result.push_back(read_entity_mesh(source, nodes));
+    } else if (const auto kept = kept_.find(source); kept != kept_.end()) {
+      result.push_back(kept->second);
     }
   }
   return result;
@@ -309,7 +345,7 @@ std::vector<Entity> ModelField::unmeshed_sources(std::size_t function) const {
   std::vector<Entity> unmeshed;
   if (field_.functions()[function].kind == Kind::mesh) {
     for (const Entity& source : field_.functions()[function].sources) {
-      if (!gmsh::has_elements(source)) {
+      if (!gmsh::has_elements(source) && kept_.count(source) == 0) {
         unmeshed.push_back(source);
       }
     }
@@ -357,7 +393,8 @@ void ModelField::refresh() {
     return;  // it has all that it will ever have
   }
   const CurrentModel current(model_);
-  read_all(is_registered());
+  forget_kept_sources();
+  read_all(is_registered() || ready_for_calls_);
 }
 
 void ModelField::read_all(bool wait_for_meshes) {
@@ -449,10 +486,12 @@ void ModelField::register_callback() {
   const CurrentModel current(model_);
   SizeCallback::check_free_for(model_);
   if (file_.empty()) {
+    forget_kept_sources();
     read_all(true);
     set_reader();
   }
   adapt_to_meshers();
+  ready_for_calls_ = true;
   callback_.reset();
   callback_ = std::make_unique<SizeCallback>(answers_, model_);
 }
@@ -478,12 +517,93 @@ void ModelField::set_reader() {
 void ModelField::unregister_callback() {
   callback_.reset();
   answers_.set_reader(nullptr, nullptr);
+  ready_for_calls_ = false;
+}
+
+std::vector<std::size_t> ModelField::unread_within_run() const {
+  std::vector<std::size_t> unread;
+  MeshFingerprints fingerprints;
+  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
+    const auto read_as = read_as_.find(i);
+    bool is_unread = read_as == read_as_.end();
+    bool is_lost = false;
+    for (const auto& [entity, before] :
+         is_unread ? std::map<Entity, std::uint64_t>() : read_as->second) {
+      const std::uint64_t now = fingerprints.of(entity);
+      const bool counts = before != 0 || field_.functions()[i].kind == Kind::mesh;
+      is_unread |= counts && now != 0 && now != before;
+      is_lost |= counts && now == 0 && before != 0;
+    }
+    if (is_unread && !is_lost) {
+      unread.push_back(i);
+    }
+  }
+  return unread;
+}
+
+void ModelField::make_ready_for_calls() {
+  if (!file_.empty()) {
+    model_ = gmsh::current_model();
+    check_acted_on();
+    adapt_to_meshers();
+    return;
+  }
+  check_model();
+  const std::vector<std::size_t> unread = unread_within_run();
+  read_sources(unread);
+  expect_late_sources(true);
+  forget_kept_sources();
+  for (const std::size_t function : unread) {
+    const auto late = late_.find(function);
+    if (late == late_.end() || !late->second.waits_for_meshes) {
+      reported_.erase(function);
+      report_unmeshed(function);
+    }
+  }
+  field_.build({}, sizes_per_tetrahedron());
+  adapt_to_meshers();
+  set_reader();
+}
+
+void ModelField::try_to_make_ready_for_calls() {
+  const std::lock_guard<std::mutex> lock(calls_mutex_);
+  if (ready_for_calls_) {
+    return;
+  }
+  std::string problem;
+  try {
+    make_ready_for_calls();
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  ready_for_calls_ = true;
+  if (!problem.empty()) {
+    gmsh::log("The size field cannot answer: " + problem, "warning");
+  }
+}
+
+double ModelField::answer_call(int dim, int tag, double x, double y, double z,
+                               double proposed) noexcept {
+  try {
+    if (file_.empty() && gmsh::current_model() != model_) {
+      return proposed;
+    }
+    if (!ready_for_calls_ && !generating_) {
+      try_to_make_ready_for_calls();
+    }
+  } catch (...) {
+    if (file_.empty()) {  // a saved field can do without Gmsh
+      return proposed;
+    }
+  }
+  return answers_.answer(dim, tag, x, y, z, proposed);
 }
 
 void ModelField::read_late_sources(int dim) {
   MeshFingerprints fingerprints;
   for (const auto& [function, late] : late_) {
     std::vector<FacetedSource> sources;
+    bool is_lost = false;
     for (const Entity& source : field_.functions()[function].sources) {
       const auto before =
           std::find_if(late.before.begin(), late.before.end(),
@@ -496,7 +616,12 @@ void ModelField::read_late_sources(int dim) {
             read_entity_mesh(source, NodeCoordinates(field_.topology().closure({source}))));
       } else if (before != late.before.end()) {
         sources.push_back(*before);
+      } else {
+        is_lost |= read_as_.at(function).at(source) != 0;
       }
+    }
+    if (is_lost) {
+      continue;  // Gmsh had thrown away a mesh before the first size was asked for: as read last
     }
     set_sources(function, sources);
     if (late.waits_for_meshes && dim > highest(field_.functions()[function].sources)) {
@@ -553,6 +678,7 @@ void ModelField::generate(int dim, bool remesh) {
   const CurrentModel current(model_);
   check_model();
   generating_ = true;
+  forget_kept_sources();
   late_.clear();
   const bool was_registered = is_registered();
   unregister_callback();
@@ -565,6 +691,7 @@ void ModelField::generate(int dim, bool remesh) {
         late_.clear();  // sources are those that were read last
       }
       set_reader();
+      ready_for_calls_ = true;
       callback_ = std::make_unique<SizeCallback>(answers_, model_);
     }
   };

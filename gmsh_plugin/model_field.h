@@ -1,11 +1,14 @@
 #ifndef MESHGROW_MODEL_FIELD_H
 #define MESHGROW_MODEL_FIELD_H
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -75,6 +78,13 @@ class ModelField {
   /// What Gmsh is told when it asks for a size; see SizeAnswers.
   const SizeAnswers& answers() const { return answers_; }
 
+  /// The same for a caller that may be a user's own size callback: the first call does what
+  /// `register_callback` does, but for registering. Gmsh throws away the meshes of surfaces as it
+  /// begins, so that of a source that has none by then is taken as it was when its function was
+  /// added. What goes wrong becomes a warning in Gmsh's log, and the answer is the proposal.
+  /// Thread-safe as SizeAnswers::answer.
+  double answer_call(int dim, int tag, double x, double y, double z, double proposed) noexcept;
+
   /// Reads all sources as they are now and builds trees and grids. Warns of (with `strict`: throws
   /// for) mesh size functions without a meshed source.
   void refresh();
@@ -109,8 +119,9 @@ class ModelField {
 
   void check_changeable(const std::string& what) const;
 
-  /// After a change of the definitions: a registered field acts at once.
-  void apply_change();
+  /// After a change of the definitions, of this function if it is there: a registered field acts at
+  /// once.
+  void apply_change(std::optional<std::size_t> function = std::nullopt);
 
   /// Throws Error if the model lacks an entity on which a saved field acts.
   void check_acted_on() const;
@@ -145,6 +156,14 @@ class ModelField {
 
   std::vector<Entity> unmeshed_sources(std::size_t function) const;
   void set_reader();
+  /// Functions to be read within a run of Gmsh: as unread_functions, but those whose meshes the run
+  /// has thrown away are left as they were read.
+  std::vector<std::size_t> unread_within_run() const;
+  void make_ready_for_calls();
+  void try_to_make_ready_for_calls();
+  /// Keeps the meshes of the sources of this function and those after it.
+  void keep_meshed_sources(std::size_t first_function);
+  void forget_kept_sources();
   /// Calibrates for the meshers chosen in Gmsh, and warns of those that ask for no sizes.
   void adapt_to_meshers();
 
@@ -166,6 +185,11 @@ class ModelField {
   };
   std::map<std::size_t, LateSources> late_;
   std::map<std::size_t, std::map<Entity, std::uint64_t>> read_as_;  ///< mesh_fingerprint.h
+  /// Meshes of sources, as they were when their functions were added, until sources are read.
+  std::map<Entity, FacetedSource> kept_;
+  bool is_keeping_ = false;
+  std::atomic<bool> ready_for_calls_{false};
+  std::mutex calls_mutex_;
   std::string file_;  ///< that it was loaded from; empty for a field of the model
   bool generating_ = false;
   std::set<std::size_t> reported_;

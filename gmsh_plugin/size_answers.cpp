@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "calibration.h"
 #include "gmsh_api.h"
@@ -10,6 +11,21 @@
 namespace meshgrow {
 
 namespace {
+
+/// Whose user's sizes this thread is asking for.
+thread_local const SizeAnswers* asking_user = nullptr;
+
+/// Marks the thread for the life of this object.
+class AskingUser {
+ public:
+  explicit AskingUser(const SizeAnswers* answers) : before_(std::exchange(asking_user, answers)) {}
+  ~AskingUser() { asking_user = before_; }
+  AskingUser(const AskingUser&) = delete;
+  AskingUser& operator=(const AskingUser&) = delete;
+
+ private:
+  const SizeAnswers* before_;
+};
 
 bool is_size(double value) { return value > 0.0 && value < SizeField::no_size; }
 
@@ -57,6 +73,8 @@ void SizeAnswers::follow_run(const Entity& entity) const {
   }
 }
 
+bool SizeAnswers::is_asking_user() const { return asking_user == this; }
+
 double SizeAnswers::calibrated(int dim, const Vec3& p, double size) const {
   if (!algorithms_ || !is_size(size)) {
     return size;
@@ -77,7 +95,8 @@ double SizeAnswers::combined(const Entity& entity, double x, double y, double z,
   if (is_size(size) && size < result) {
     result = size;
   }
-  if (user_sizes_) {
+  if (user_sizes_ && !is_asking_user()) {
+    const AskingUser asking(this);
     const double users = user_sizes_(entity.dim, entity.tag, x, y, z, result);
     if (is_size(users) && users < result) {
       result = users;
@@ -109,7 +128,7 @@ double SizeAnswers::answer(int dim, int tag, double x, double y, double z,
       return scale == scales_.end() ? combined(entity, x, y, z, proposed)
                                     : scaled(scale->second, entity, x, y, z, proposed);
     }
-    if (!reader_) {
+    if (!reader_ || is_asking_user()) {  // who asks holds the lock
       return combined(entity, x, y, z, proposed);
     }
     follow_run(entity);

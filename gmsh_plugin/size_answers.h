@@ -15,6 +15,9 @@
 
 namespace meshgrow {
 
+/// What Gmsh itself takes for "no size".
+constexpr double gmsh_no_size = 1e22;
+
 /// A user's own sizes: (dim, tag, x, y, z, size so far) -> size, called from several threads.
 using UserSizes = std::function<double(int, int, double, double, double, double)>;
 
@@ -22,7 +25,7 @@ using UserSizes = std::function<double(int, int, double, double, double, double)
 /// the user's own sizes, and corrected where Gmsh needs it.
 ///
 /// Thread safety: `answer` may be called from any thread at any time between the calls of other
-/// functions; it never throws.
+/// functions, also by the user's own sizes, which are left out then; it never throws.
 class SizeAnswers {
  public:
   explicit SizeAnswers(const SizeField& field) : field_(field) {}
@@ -73,6 +76,7 @@ class SizeAnswers {
                   std::function<bool(const Entity& curve)> has_mesh);
 
  private:
+  bool is_asking_user() const;
   double calibrated(int dim, const Vec3& p, double size) const;
   double combined(const Entity& entity, double x, double y, double z, double proposed) const;
   double scaled(const Scale& scale, const Entity& entity, double x, double y, double z,

@@ -14,9 +14,6 @@ namespace meshgrow {
 
 namespace {
 
-/// What Gmsh itself takes for "no size".
-constexpr double gmsh_no_size = 1e22;
-
 /// The slots that live, for each model, the one that Gmsh holds last; 4.8 holds one for all models.
 std::map<std::string, std::vector<SizeCallback::Slot*>>& registered_slots() {
   static std::map<std::string, std::vector<SizeCallback::Slot*>> slots;

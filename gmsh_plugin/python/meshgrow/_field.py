@@ -1,15 +1,22 @@
 """The size field of a Gmsh model."""
 
+from __future__ import annotations
+
 import json
 import operator
+from typing import Any, Callable, Dict, Optional
 
-import numpy as np
+import numpy.typing as npt
 
-from ._library import (PROGRESS_LISTENER, USER_SIZES, check, dim_tags, doubles, lib, points_array,
-                       take_text)
+from ._library import (PROGRESS_LISTENER, USER_SIZES, DimTags, Doubles, check, dim_tags, doubles,
+                       lib, points_array, sizes_array, take_text)
 from ._interrupts import interrupts_kept
 from ._plan import Plan
 from ._raised import Raised
+from ._user_sizes import UserSizes
+
+_callback = lib.meshgrow_field_callback
+_NO_SIZE = 1e22  # what Gmsh takes for none
 
 
 class SizeField:
@@ -36,8 +43,9 @@ class SizeField:
         exception from it stops the work; what was meshed is kept.
     """
 
-    def __init__(self, tolerance=0.05, evaluator="auto", strict=False, threads=0,
-                 progress=None, calibrate=False):
+    def __init__(self, tolerance: float = 0.05, evaluator: str = "auto", strict: bool = False,
+                 threads: int = 0, progress: Optional[Callable[[str], Any]] = None,
+                 calibrate: bool = False) -> None:
         self._raised = Raised()
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
@@ -54,19 +62,20 @@ class SizeField:
             self._listener = PROGRESS_LISTENER(self._raised.listener(progress))
             check(lib.meshgrow_field_set_progress(self._handle, self._listener, None))
 
-    def __del__(self):
+    def __del__(self) -> None:
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             lib.meshgrow_field_destroy(handle)
 
-    def _check(self, failed):
+    def _check(self, failed: int) -> None:
         self._raised.raise_again()
         check(failed)
 
-    def _set(self, name, value):
+    def _set(self, name: str, value: float) -> None:
         check(lib.meshgrow_field_set_option(self._handle, name.encode(), float(value)))
 
-    def add_mesh(self, sources, attach, growth_rate=1.2, size_limit=None, quad_size="triangles"):
+    def add_mesh(self, sources: DimTags, attach: DimTags, growth_rate: float = 1.2,
+                 size_limit: Optional[float] = None, quad_size: str = "triangles") -> None:
         """The mesh on the sources (curves, surfaces) grows into the attachments.
 
         Each layer of elements is ``growth_rate`` (>= 1) times the one before, up to ``size_limit``
@@ -79,14 +88,16 @@ class SizeField:
             self._handle, *dim_tags(sources), *dim_tags(attach), growth_rate, _limit(size_limit),
             int(quad_size == "sides")))
 
-    def add_fixed(self, sources, attach, size, growth_rate=1.2, size_limit=None):
+    def add_fixed(self, sources: DimTags, attach: DimTags, size: float, growth_rate: float = 1.2,
+                  size_limit: Optional[float] = None) -> None:
         """The size ``size`` (> 0) on the sources (points to volumes) grows into the attachments."""
         check(lib.meshgrow_field_add_fixed(
             self._handle, *dim_tags(sources), *dim_tags(attach), size, growth_rate,
             _limit(size_limit)))
 
-    def add_curvature(self, sources, attach, angle=18, growth_rate=1.2, size_limit=None,
-                      min_size=0.0):
+    def add_curvature(self, sources: DimTags, attach: DimTags, angle: float = 18,
+                      growth_rate: float = 1.2, size_limit: Optional[float] = None,
+                      min_size: float = 0.0) -> None:
         """The curvature of the sources (curves, surfaces) grows into the attachments.
 
         An edge of an element may turn by ``angle`` degrees: the size is 2 sin(angle / 2) over the
@@ -97,8 +108,9 @@ class SizeField:
             self._handle, *dim_tags(sources), *dim_tags(attach), angle, growth_rate,
             _limit(size_limit), min_size))
 
-    def add_proximity(self, sources, attach, cells_per_gap=3, growth_rate=1.2, size_limit=None,
-                      min_size=0.0, between=None):
+    def add_proximity(self, sources: DimTags, attach: DimTags, cells_per_gap: float = 3,
+                      growth_rate: float = 1.2, size_limit: Optional[float] = None,
+                      min_size: float = 0.0, between: Optional[str] = None) -> None:
         """The gaps between the sources and what is opposite grow into the attachments.
 
         ``cells_per_gap`` (> 0, need not be whole) elements fit into each gap, measured through the
@@ -115,7 +127,8 @@ class SizeField:
             self._handle, *dim_tags(sources), *dim_tags(attach), cells_per_gap, growth_rate,
             _limit(size_limit), min_size, names.index(between)))
 
-    def create_defaults(self, attach=None, growth_rate=1.2, size_limit=None, min_size=0.0):
+    def create_defaults(self, attach: Optional[DimTags] = None, growth_rate: float = 1.2,
+                        size_limit: Optional[float] = None, min_size: float = 0.0) -> None:
         """Adds what suits most models: curvature (18 degrees) and proximity (3 cells per gap,
         between faces and edges) of the attachments themselves.
 
@@ -124,12 +137,12 @@ class SizeField:
         check(lib.meshgrow_field_create_defaults(
             self._handle, *dim_tags(attach or ()), growth_rate, _limit(size_limit), min_size))
 
-    def add(self, text):
+    def add(self, text: str) -> None:
         """A size function by its line of text, the same as on the command line:
         ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``."""
         check(lib.meshgrow_field_add(self._handle, text.encode()))
 
-    def generate(self, dim=3, remesh=False):
+    def generate(self, dim: int = 3, remesh: bool = False) -> None:
         """Meshes up to dimension ``dim`` with Gmsh's own algorithms, sources first.
 
         What had a mesh before keeps it: node tags, coordinates to the bit, connectivity. Only where
@@ -143,7 +156,7 @@ class SizeField:
             failed = lib.meshgrow_field_generate(self._handle, dim, bool(remesh))
         self._check(failed)
 
-    def plan(self, dim=3):
+    def plan(self, dim: int = 3) -> Plan:
         """The passes of ``generate(dim)``, without meshing: a list of dictionaries with ``dim``,
         ``attached``, ``entities``, ``functions`` (indices) and ``sources`` (read before the pass).
         Printed, it reads as text."""
@@ -151,7 +164,7 @@ class SizeField:
         return Plan(json.loads(take_text(lib.meshgrow_field_plan_json(self._handle, dim))),
                     take_text(lib.meshgrow_field_plan(self._handle, dim)))
 
-    def combine(self, sizes):
+    def combine(self, sizes: Optional[UserSizes]) -> None:
         """Sizes of your own beside the field: Gmsh is told the smaller one, in the whole model.
 
         ``sizes`` is a size callback as Gmsh takes it, ``(dim, tag, x, y, z, lc)`` or, as in Gmsh
@@ -167,7 +180,7 @@ class SizeField:
         check(lib.meshgrow_field_combine(self._handle, user_sizes, None))
         self._user_sizes = user_sizes  # Kept as long as the field, which calls it.
 
-    def register(self):
+    def register(self) -> None:
         """Reads the sources as they are meshed now and becomes Gmsh's size callback.
 
         Only the callback: you mesh, with ``gmsh.model.mesh.generate``. A source that gets its mesh
@@ -176,41 +189,63 @@ class SizeField:
         """
         self._check(lib.meshgrow_field_register(self._handle))
 
-    def unregister(self):
+    def unregister(self) -> None:
         """Takes the size callback away again."""
         check(lib.meshgrow_field_unregister(self._handle))
 
-    def refresh(self):
+    def refresh(self) -> None:
         """Reads the sources as they are meshed now and builds the grids."""
         self._check(lib.meshgrow_field_refresh(self._handle))
 
-    def size(self, dim, tag, points):
+    def __call__(self, dim: int, tag: int, x: float, y: float, z: float,
+                 lc: float = _NO_SIZE) -> float:
+        """The field as a size callback of Gmsh: the smaller one of ``lc`` and the size asked for on
+        the entity at the point. With Gmsh 4.8, which passes no ``lc``, 1e22 where no function acts.
+
+            gmsh.model.mesh.setSizeCallback(field)
+
+        or within a callback of your own. The first call reads the sources, as ``register`` does; a
+        mesh that Gmsh throws away as it begins is taken as it was when the function was added.
+        Raises nothing: where the field cannot answer, a warning in Gmsh's log says why, and ``lc``
+        is the answer. May be called from several threads. Gmsh runs Python code for each size;
+        ``register`` does without.
+        """
+        return _callback(dim, tag, x, y, z, lc, self._handle)  # type: ignore[no-any-return]
+
+    def size(self, dim: int, tag: int, points: npt.ArrayLike,
+             out: Optional[Doubles] = None) -> Doubles:
         """Sizes asked for on an entity at points (n, 3) -> (n,) float64; inf where none acts.
 
-        Before Gmsh applies Mesh.MeshSizeMin, Max and Factor to them.
+        Before Gmsh applies Mesh.MeshSizeMin, Max and Factor to them. Points that are a contiguous
+        float64 array are not copied; ``out``, a contiguous float64 array of the shape (n,), takes
+        the result and is returned. Raises Error if the entity is not in the model.
         """
-        return self._sizes(lib.meshgrow_field_size, dim, tag, points)
+        return self._sizes(lib.meshgrow_field_size, dim, tag, points, out)
 
-    def exact_size(self, dim, tag, points):
+    def exact_size(self, dim: int, tag: int, points: npt.ArrayLike,
+                   out: Optional[Doubles] = None) -> Doubles:
         """The same without the grid: the minimum over all facets of the sources."""
-        return self._sizes(lib.meshgrow_field_exact_size, dim, tag, points)
+        return self._sizes(lib.meshgrow_field_exact_size, dim, tag, points, out)
 
-    def _sizes(self, function, dim, tag, points):
+    def _sizes(self, function: Callable[..., int], dim: int, tag: int, points: npt.ArrayLike,
+               out: Optional[Doubles]) -> Doubles:
         array = points_array(points)
-        result = np.empty(len(array))
+        result = sizes_array(out, len(array))
         self._check(function(self._handle, dim, tag, doubles(array), len(array), doubles(result)))
         return result
 
-    def summary(self):
+    def summary(self) -> str:
         """Functions, groups and grids as text for people."""
         return take_text(lib.meshgrow_field_summary(self._handle))
 
-    def statistics(self):
+    def statistics(self) -> Dict[str, Any]:
         """The same as a dictionary: ``functions`` and ``groups``, each a list."""
-        return json.loads(take_text(lib.meshgrow_field_summary_json(self._handle)))
+        result: Dict[str, Any] = json.loads(
+            take_text(lib.meshgrow_field_summary_json(self._handle)))
+        return result
 
 
-def _limit(size_limit):
+def _limit(size_limit: Optional[float]) -> float:
     if size_limit is None:
         raise ValueError("give size_limit, the largest size that the function asks for")
     return size_limit

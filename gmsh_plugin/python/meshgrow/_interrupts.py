@@ -1,12 +1,15 @@
 """Ctrl-C while the library works."""
 
+from __future__ import annotations
+
 import contextlib
 import signal
 import threading
+from typing import Callable, Iterator
 
 
 @contextlib.contextmanager
-def interrupts_kept(keep):
+def interrupts_kept(keep: Callable[[BaseException], None]) -> Iterator[None]:
     """Hands a KeyboardInterrupt to ``keep`` instead of raising it, where Python would raise it.
 
     Python raises it between two of its own instructions; within the library these are in callbacks,

@@ -1,10 +1,18 @@
 """The shared library behind the package, and what passes its C border."""
 
+from __future__ import annotations
+
 import ctypes
 import operator
 import os
+from typing import Any, Iterable, List, NoReturn, Optional, Tuple, Union
 
 import numpy as np
+import numpy.typing as npt
+
+#: Entities as in gmsh: (dimension 0 to 3, tag) each.
+DimTags = Iterable[Tuple[int, int]]
+Doubles = npt.NDArray[np.float64]
 
 _DOUBLE = ctypes.c_double
 _SIZE = ctypes.c_size_t
@@ -48,9 +56,13 @@ _SIGNATURES = {
     "meshgrow_field_exact_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
     "meshgrow_field_answer": (
         _DOUBLE, [_FIELD, _INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "meshgrow_field_callback": (
+        _DOUBLE, [_INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE, _FIELD]),
+    "meshgrow_field_callback_4_8": (_DOUBLE, [_INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _FIELD]),
     "meshgrow_field_summary": (_TEXT, [_FIELD]),
     "meshgrow_field_summary_json": (_TEXT, [_FIELD]),
     "meshgrow_report_json": (_TEXT, [_INT, _INTS, _SIZE, _FIELD]),
+    "meshgrow_report_value": (_INT, [ctypes.c_char_p, ctypes.c_char_p, _DOUBLES]),
     "meshgrow_report_table": (_TEXT, [ctypes.c_char_p]),
 }
 
@@ -59,7 +71,7 @@ class Error(RuntimeError):
     """What meshgrow raises: one sentence that names the entity and the remedy."""
 
 
-def _find_library():
+def _find_library() -> str:
     """The library beside the package (installed), in the build tree, or named by MESHGROW_LIB."""
     here = os.path.dirname(os.path.abspath(__file__))
     named = os.environ.get("MESHGROW_LIB")
@@ -75,7 +87,7 @@ def _find_library():
                       "MESHGROW_LIB to its path." % ", ".join(candidates))
 
 
-def _load():
+def _load() -> ctypes.CDLL:
     library = ctypes.CDLL(_find_library())
     for name, (result, arguments) in _SIGNATURES.items():
         function = getattr(library, name)
@@ -87,30 +99,34 @@ def _load():
 lib = _load()
 
 
-def version():
+def version() -> str:
     """Version of the library, such as "0.1.0"."""
-    return lib.meshgrow_version().decode()
+    return str(lib.meshgrow_version().decode())
 
 
-def check(failed):
+def raise_last_error() -> NoReturn:
+    raise Error(lib.meshgrow_last_error().decode())
+
+
+def check(failed: Union[int, bool]) -> None:
     """Raises the library's last error if a call failed."""
     if failed:
-        raise Error(lib.meshgrow_last_error().decode())
+        raise_last_error()
 
 
-def take_text(text):
+def take_text(text: Optional[int]) -> str:
     """A returned text as str, its memory freed; raises the last error if there is none."""
     if not text:
-        check(True)
+        raise_last_error()
     try:
         return ctypes.string_at(text).decode()
     finally:
         lib.meshgrow_free(text)
 
 
-def dim_tags(entities):
+def dim_tags(entities: DimTags) -> Tuple[Any, int]:
     """A list of (dim, tag) as the C array of ints and its length."""
-    flat = []
+    flat: List[int] = []
     for dim, tag in entities:
         flat += [operator.index(dim), operator.index(tag)]
     if any(abs(value) > 2**31 - 1 for value in flat):
@@ -118,16 +134,27 @@ def dim_tags(entities):
     return (_INT * len(flat))(*flat), len(flat)
 
 
-def doubles(array):
+def doubles(array: Doubles) -> Any:
     """Pointer to the data of a contiguous float64 array."""
     return array.ctypes.data_as(_DOUBLES)
 
 
-def points_array(points):
-    """Points as a contiguous float64 array of shape (n, 3)."""
+def points_array(points: npt.ArrayLike) -> Doubles:
+    """Points as a contiguous float64 array of shape (n, 3); one that is so already, without a copy."""
     array = np.ascontiguousarray(points, dtype=np.float64)
     if array.ndim == 1:
         array = array.reshape(1, -1)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError("points must have the shape (n, 3), not %s" % (array.shape,))
     return array
+
+
+def sizes_array(out: Optional[Doubles], count: int) -> Doubles:
+    """An array for this many sizes: ``out`` if one is given and fits."""
+    if out is None:
+        return np.empty(count)
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or out.shape != (count,):
+        raise ValueError("out must be a float64 array of the shape (%d,), one size a point" % count)
+    if not (out.flags.c_contiguous and out.flags.writeable):
+        raise ValueError("out must be contiguous and writeable")
+    return out

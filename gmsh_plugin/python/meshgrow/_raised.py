@@ -1,6 +1,10 @@
 """Exceptions on their way through the library."""
 
-from ._user_sizes import takes_size_so_far
+from __future__ import annotations
+
+from typing import Any, Callable, Optional
+
+from ._user_sizes import UserSizes, takes_size_so_far
 
 
 class Raised:
@@ -10,26 +14,26 @@ class Raised:
     its last name goes, since that removes it from Gmsh.
     """
 
-    def __init__(self):
-        self.exception = None
+    def __init__(self) -> None:
+        self.exception: Optional[BaseException] = None
         self.stops = False
 
-    def keep(self, exception):
+    def keep(self, exception: BaseException) -> None:
         """The first one counts; the next line of progress stops the work."""
         self.exception = self.exception or exception
         self.stops = True
 
-    def forget(self):
+    def forget(self) -> None:
         self.exception, self.stops = None, False
 
-    def raise_again(self):
+    def raise_again(self) -> None:
         exception, self.exception, self.stops = self.exception, None, False
         if exception is not None:
             raise exception
 
-    def listener(self, progress):
+    def listener(self, progress: Callable[[str], Any]) -> Callable[[bytes, Any], int]:
         """A listener of progress for the library."""
-        def listen(line, _):
+        def listen(line: bytes, _: Any) -> int:
             if not self.stops:
                 try:
                     progress(line.decode())
@@ -38,12 +42,13 @@ class Raised:
             return int(self.stops)
         return listen
 
-    def sizes(self, sizes):
+    def sizes(self, sizes: UserSizes) -> Callable[..., float]:
         """A size callback for the library; where it raises there is no size."""
-        call = sizes if takes_size_so_far(sizes) else (
+        call: UserSizes = sizes if takes_size_so_far(sizes) else (
             lambda dim, tag, x, y, z, lc: sizes(dim, tag, x, y, z))
 
-        def guarded(dim, tag, x, y, z, lc, _):
+        def guarded(dim: int, tag: int, x: float, y: float, z: float, lc: float,
+                    _: Any) -> float:
             if self.exception is not None:
                 return -1.0
             try:
