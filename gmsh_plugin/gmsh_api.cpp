@@ -112,9 +112,12 @@ Version require_gmsh() {
   try {
     gmsh.call("gmshOptionGetString", static_cast<const char*>("General.Version"), &text);
   } catch (const Error&) {
-    throw Error("Gmsh is not initialized: call gmsh.initialize() first.");
+    text = nullptr;
   }
   const std::string version_text = take_string(text);
+  if (version_text.empty()) {  // depending on how it was built, Gmsh fails or says nothing
+    throw Error("Gmsh is not initialized: call gmsh.initialize() first.");
+  }
   Version version;
   if (std::sscanf(version_text.c_str(), "%d.%d", &version.major, &version.minor) != 2) {
     throw Error("The libgmsh in use (" + gmsh.path() +
