@@ -20,7 +20,7 @@ extra_packages=()
 
 install_packages() {
   local wanted=(
-    g++ cmake ninja-build
+    g++ cmake ninja-build pkgconf
     libeigen3-dev libcli11-dev nlohmann-json3-dev libxxhash-dev libgtest-dev
     gmsh libgmsh-dev gmsh-doc python3-gmsh python3-numpy python3-pytest python3-venv
     libglu1-mesa libxcursor1 libxfixes3 libxft2 libxinerama1
