@@ -1,0 +1,77 @@
+#include "field_arguments.h"
+
+#include <CLI/Validators.hpp>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace meshgrow::cli {
+
+void add_field_options(CLI::App& command, FieldArguments& arguments) {
+  command
+      .add_option("--size-function", arguments.size_functions,
+                  "A size function, one line of text such as 'mesh source Surface{7} attach "
+                  "Volume{2} growth 1.2 limit 2'; may be given several times")
+      ->allow_extra_args(false);
+  command.add_option("--size-functions", arguments.file,
+                     "A file of size functions, one a line; # begins a comment");
+  command
+      .add_option("--defaults", arguments.defaults_limit,
+                  "Curvature (18 degrees) and proximity (3 cells per gap) of everything, "
+                  "growth 1.2, up to this size")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--tolerance", arguments.tolerance, "Relative tolerance of the background grid")
+      ->capture_default_str();
+  command
+      .add_option("--evaluator", arguments.evaluator,
+                  "Who answers sizes: exact (a tree of facets), grid (a background grid) or "
+                  "auto (a grid where it pays)")
+      ->check(CLI::IsMember({"auto", "grid", "exact"}))
+      ->capture_default_str();
+  command.add_flag("--strict", arguments.strict,
+                   "A source without a mesh is an error, not a warning");
+  command.add_flag("--calibrate", arguments.calibrate,
+                   "Correct sizes by measured factors: Gmsh's edges get the length asked for");
+}
+
+std::vector<std::string> size_function_texts(const FieldArguments& arguments) {
+  std::vector<std::string> result = arguments.size_functions;
+  if (!arguments.file.empty()) {
+    std::ifstream file(arguments.file);
+    if (!file) {
+      throw Error("Cannot read " + arguments.file + " (" + std::strerror(errno) +
+                  "): give a file of size functions, one a line.");
+    }
+    for (std::string line; std::getline(file, line);) {
+      const std::size_t first = line.find_first_not_of(" \t\r");
+      if (first != std::string::npos && line[first] != '#') {
+        result.push_back(line.substr(first, line.find_last_not_of(" \t\r") + 1 - first));
+      }
+    }
+  }
+  return result;
+}
+
+FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::string>& texts) {
+  FieldPointer field(meshgrow_field_create());
+  check(field ? 0 : 1);
+  check(meshgrow_field_set_option(field.get(), "tolerance", arguments.tolerance));
+  const double evaluator = arguments.evaluator == "exact"  ? 2.0
+                           : arguments.evaluator == "grid" ? 1.0
+                                                           : 0.0;
+  check(meshgrow_field_set_option(field.get(), "evaluator", evaluator));
+  check(meshgrow_field_set_option(field.get(), "strict", arguments.strict ? 1.0 : 0.0));
+  check(meshgrow_field_set_option(field.get(), "calibrate", arguments.calibrate ? 1.0 : 0.0));
+  for (const std::string& text : texts) {
+    check(meshgrow_field_add(field.get(), text.c_str()));
+  }
+  if (arguments.defaults_limit != 0.0) {
+    constexpr double growth_rate = 1.2;
+    check(meshgrow_field_create_defaults(field.get(), nullptr, 0, growth_rate,
+                                         arguments.defaults_limit, 0.0));
+  }
+  return field;
+}
+
+}  // namespace meshgrow::cli

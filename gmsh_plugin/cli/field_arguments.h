@@ -1,0 +1,35 @@
+#ifndef MESHGROW_CLI_FIELD_ARGUMENTS_H
+#define MESHGROW_CLI_FIELD_ARGUMENTS_H
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+#include "c_results.h"
+
+namespace meshgrow::cli {
+
+/// What a command is told about the size field.
+struct FieldArguments {
+  std::vector<std::string> size_functions;
+  std::string file;
+  double defaults_limit = 0.0;  ///< size limit of the default functions; 0: none of them
+  double tolerance = 0.05;
+  std::string evaluator = "auto";
+  bool strict = false;
+  bool calibrate = false;
+};
+
+/// Gives the command options that fill `arguments`, which must outlive the parsing.
+void add_field_options(CLI::App& command, FieldArguments& arguments);
+
+/// The size functions by their one-line texts, those of the file last. Throws Error if the file
+/// cannot be read.
+std::vector<std::string> size_function_texts(const FieldArguments& arguments);
+
+/// The size field of the current model with these functions. Throws Error.
+FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::string>& texts);
+
+}  // namespace meshgrow::cli
+
+#endif
