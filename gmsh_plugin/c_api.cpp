@@ -4,9 +4,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "error.h"
+#include "field_view.h"
 #include "gmsh_api.h"
 #include "mesh_report.h"
 #include "meshgrow.h"
@@ -84,6 +86,11 @@ SizeFunction common(Kind kind, std::vector<Entity> sources, std::vector<Entity> 
   function.growth_rate = growth_rate;
   function.size_limit = size_limit;
   return function;
+}
+
+/// A negative dimension stands for no entity.
+std::optional<Entity> optional_entity(int dim, int tag) {
+  return dim < 0 ? std::nullopt : std::optional<Entity>({dim, tag});
 }
 
 using SizesOf = void (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec3*, std::size_t,
@@ -448,6 +455,49 @@ int meshgrow_field_size(meshgrow_field* field, int dim, int tag, const double* p
 int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag, const double* points,
                               size_t points_n, double* sizes) {
   return sizes_at(field, &meshgrow::SizeField::exact_sizes, dim, tag, points, points_n, sizes);
+}
+
+int meshgrow_field_smallest_size(meshgrow_field* field, const double* points, size_t points_n,
+                                 double* sizes) {
+  return guarded(1, [&] {
+    deref(field).refresh_if_needed();
+    std::vector<meshgrow::Vec3> at;
+    at.reserve(points_n);
+    for (size_t i = 0; i < points_n; ++i) {
+      at.emplace_back(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+    }
+    deref(field).field().smallest_sizes(at.data(), points_n, sizes);
+    return 0;
+  });
+}
+
+int meshgrow_field_add_view(meshgrow_field* field, const char* name, const char* kind, int dim,
+                            int tag, const double* plane, int resolution, int* view_tag) {
+  return guarded(1, [&] {
+    meshgrow::ViewRequest request;
+    request.name = name;
+    request.kind = meshgrow::view_kind(kind);
+    request.entity = optional_entity(dim, tag);
+    if (plane != nullptr) {
+      request.plane = {{plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}};
+    }
+    if (resolution != 0) {
+      request.resolution = resolution;
+    }
+    *view_tag = meshgrow::add_view(deref(field), request);
+    return 0;
+  });
+}
+
+int meshgrow_field_write_view(meshgrow_field* field, const char* path, int dim, int tag,
+                              size_t* cells) {
+  return guarded(1, [&] {
+    const std::size_t written = meshgrow::write_view(deref(field), optional_entity(dim, tag), path);
+    if (cells != nullptr) {
+      *cells = written;
+    }
+    return 0;
+  });
 }
 
 double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x, double y,

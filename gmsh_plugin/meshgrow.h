@@ -162,6 +162,29 @@ MESHGROW_API int meshgrow_field_size(meshgrow_field* field, int dim, int tag, co
 MESHGROW_API int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag,
                                            const double* points, size_t points_n, double* sizes);
 
+/* The same for who knows no entity: the smallest size that any function asks for anywhere. */
+MESHGROW_API int meshgrow_field_smallest_size(meshgrow_field* field, const double* points,
+                                              size_t points_n, double* sizes);
+
+/* Puts the field into Gmsh as a post-processing view `name` and tells the view's tag. `kind`:
+ * "cells" (of the background grid, as hexahedra), "plane" (a cut, as quadrangles) or "mesh" (at the
+ * nodes of the mesh that the model has). Shows the field of the entity (dim, tag), or with a
+ * negative `dim` the smallest size that any function asks for. `plane`: a point and a normal, or
+ * NULL for the plane through the middle of the entity's box, square to its shortest side (z where
+ * sides are equal). `resolution`: so many squares along the longer side of the cut, divided further
+ * where sizes bend; 0 for 32. */
+MESHGROW_API int meshgrow_field_add_view(meshgrow_field* field, const char* name, const char* kind,
+                                         int dim, int tag, const double* plane, int resolution,
+                                         int* view_tag);
+
+/* Writes the field of the entity (dim, tag), or with a negative `dim` the smallest size that any
+ * function asks for, into a file that other programs read, by its ending: .vtu (for ParaView: the
+ * cells of the background grid), .pos (a view that any Gmsh can take for a background field: within
+ * the tolerance of the field) or .msh (the same cells as a mesh). The file is there completely, or
+ * as before. `cells`, unless NULL, gets their number. */
+MESHGROW_API int meshgrow_field_write_view(meshgrow_field* field, const char* path, int dim,
+                                           int tag, size_t* cells);
+
 /* What Gmsh is told when it proposes `proposed` itself: the smaller of the two. */
 MESHGROW_API double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x,
                                           double y, double z, double proposed);

@@ -31,6 +31,17 @@ struct GridOptions {
 /// Throws Error unless a background grid can have this relative tolerance: 0.0001 to 1.
 void check_tolerance(double tolerance);
 
+/// A leaf of a background grid, as BackgroundGrid::for_each_leaf tells it.
+struct GridLeaf {
+  LatticePlace lowest;
+  int depth = 0;  ///< its edge is that of the cube divided by 2^depth
+  /// Sizes at its corners, in the order of GridCell's, to be interpolated; null if facets answer.
+  const std::array<float, 8>* sizes = nullptr;
+  /// Whether it keeps facets that answer. If not, and nothing is interpolated, the whole tree does:
+  /// in cells outside of where sizes will be asked for, and in the smallest there are.
+  bool keeps_facets = false;
+};
+
 /// Octree that interpolates a size field (paper, section 4; DESIGN.md, section 2).
 ///
 /// The field is h(p) = min(L, min over facets of S0 + α · distance). The grid promises
@@ -59,6 +70,11 @@ class BackgroundGrid {
   /// The same for many points, which wait for memory together and not one after the other.
   /// Returns how many were interpolated.
   std::size_t sizes(const Vec3* points, std::size_t count, double* sizes) const;
+
+  /// Calls `visit` for every leaf. Together they fill the cube; the lattice is that of
+  /// `grid_cube()`.
+  void for_each_leaf(const std::function<void(const GridLeaf&)>& visit) const;
+  const GridCube& grid_cube() const { return stored_.cube; }
 
   using Statistics = GridStatistics;
   const Statistics& statistics() const { return stored_.statistics; }

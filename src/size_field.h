@@ -130,6 +130,26 @@ class SizeField {
   void exact_sizes(const Entity& entity, const Vec3* points, std::size_t count,
                    double* sizes) const;
 
+  /// The smallest size that any group asks for at the points, for who knows no entity: what a view
+  /// or a server answers. From grids where there are any. `groups`, unless null, gets the index
+  /// into groups() of the one that decides (the first of equal ones).
+  void smallest_sizes(const Vec3* points, std::size_t count, double* sizes,
+                      std::size_t* groups = nullptr) const;
+
+  /// All that answers sizes of one group, or of all groups together.
+  struct Answering {
+    std::shared_ptr<const FacetTree> tree;  ///< null if nothing is built
+    double size_limit = no_size;
+    Box box;                                     ///< of the entities
+    std::shared_ptr<const BackgroundGrid> grid;  ///< null if there is none
+    std::size_t group = 0;                       ///< index into groups(); 0 of all together
+  };
+  /// The group of an entity; nothing if no function acts on it.
+  Answering answering(const Entity& entity) const;
+  /// A tree of the facets of all groups: the smallest size that any group asks for, in the box of
+  /// the whole model. Made anew at each call if there are several groups, and without a grid then.
+  Answering answering_together() const;
+
   struct GroupSummary {
     std::vector<Entity> entities;
     std::vector<std::size_t> functions;

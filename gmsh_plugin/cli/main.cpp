@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "field_command.h"
 #include "mesh_command.h"
 #include "meshgrow.h"
 #include "report_command.h"
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   meshgrow::cli::add_mesh_command(app);
   meshgrow::cli::add_report_command(app);
+  meshgrow::cli::add_field_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,12 +8,13 @@ from typing import Any, Callable, Dict, Optional
 
 import numpy.typing as npt
 
-from ._library import (PROGRESS_LISTENER, USER_SIZES, DimTags, Doubles, check, dim_tags, doubles,
-                       lib, points_array, sizes_array, take_text)
+from ._library import (PROGRESS_LISTENER, USER_SIZES, DimTag, DimTags, Doubles, check, dim_tags,
+                       doubles, lib, points_array, sizes_array, take_text)
 from ._interrupts import interrupts_kept
 from ._plan import Plan
 from ._raised import Raised
 from ._user_sizes import UserSizes
+from ._view import add_view, write_view
 
 _callback = lib.meshgrow_field_callback
 _NO_SIZE = 1e22  # what Gmsh takes for none
@@ -226,6 +227,37 @@ class SizeField:
                    out: Optional[Doubles] = None) -> Doubles:
         """The same without the grid: the minimum over all facets of the sources."""
         return self._sizes(lib.meshgrow_field_exact_size, dim, tag, points, out)
+
+    def smallest_size(self, points: npt.ArrayLike, out: Optional[Doubles] = None) -> Doubles:
+        """The same for who knows no entity: the smallest size that any function asks for."""
+        array = points_array(points)
+        result = sizes_array(out, len(array))
+        self._check(lib.meshgrow_field_smallest_size(
+            self._handle, doubles(array), len(array), doubles(result)))
+        return result
+
+    def add_view(self, name: str = "sizes", kind: str = "cells", entity: Optional[DimTag] = None,
+                 plane: Any = None, resolution: Optional[int] = None) -> int:
+        """Puts the field into Gmsh as a post-processing view; returns the view's tag.
+
+        ``kind`` is ``"cells"`` (of the background grid), ``"plane"`` (a cut) or ``"mesh"`` (at the
+        nodes of the mesh that the model has). Shows the field of ``entity``, a ``(dim, tag)``, or
+        the smallest size that any function asks for. ``plane`` is ``"x=0.5"`` or a point and a
+        normal; None cuts through the middle, square to the shortest side of the box (to z where
+        sides are equal). ``resolution`` squares along the longer side of the cut (32) are divided
+        further where sizes bend.
+        """
+        return add_view(self._handle, name, kind, entity, plane, resolution)
+
+    def write_view(self, path: str, entity: Optional[DimTag] = None) -> int:
+        """Writes the field into a file that other programs read; returns how many cells it has.
+
+        By the ending of ``path``: ``.vtu`` (ParaView: the cells of the background grid), ``.pos``
+        (a view that any Gmsh can take for a background field, within the tolerance) or ``.msh``
+        (the same cells as a mesh). Of the field of ``entity``, a ``(dim, tag)``, or of the smallest
+        size that any function asks for. The file is there completely, or as before.
+        """
+        return write_view(self._handle, path, entity)
 
     def _sizes(self, function: Callable[..., int], dim: int, tag: int, points: npt.ArrayLike,
                out: Optional[Doubles]) -> Doubles:

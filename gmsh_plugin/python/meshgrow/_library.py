@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 #: Entities as in gmsh: (dimension 0 to 3, tag) each.
-DimTags = Iterable[Tuple[int, int]]
+DimTag = Tuple[int, int]
+DimTags = Iterable[DimTag]
 Doubles = npt.NDArray[np.float64]
 
 _DOUBLE = ctypes.c_double
@@ -54,6 +55,11 @@ _SIGNATURES = {
     "meshgrow_field_combine": (_INT, [_FIELD, USER_SIZES, ctypes.c_void_p]),
     "meshgrow_field_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
     "meshgrow_field_exact_size": (_INT, [_FIELD, _INT, _INT, _DOUBLES, _SIZE, _DOUBLES]),
+    "meshgrow_field_smallest_size": (_INT, [_FIELD, _DOUBLES, _SIZE, _DOUBLES]),
+    "meshgrow_field_add_view": (
+        _INT, [_FIELD, ctypes.c_char_p, ctypes.c_char_p, _INT, _INT, _DOUBLES, _INT, _INTS]),
+    "meshgrow_field_write_view": (
+        _INT, [_FIELD, ctypes.c_char_p, _INT, _INT, ctypes.POINTER(_SIZE)]),
     "meshgrow_field_answer": (
         _DOUBLE, [_FIELD, _INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "meshgrow_field_callback": (

@@ -1,0 +1,149 @@
+#include "field_command.h"
+
+#include <CLI/Validators.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "c_results.h"
+#include "error.h"
+#include "field_arguments.h"
+#include "field_view.h"
+#include "gmsh_session.h"
+#include "model_file.h"
+#include "number_text.h"
+
+namespace meshgrow::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FieldCommandArguments {
+  std::string model;
+  std::string output;
+  std::string entity;  ///< "3,2"; empty for the smallest size of all functions
+  bool dim_1 = false;
+  bool dim_2 = false;
+  int verbosity = 2;
+  FieldArguments field;
+};
+
+/// No entity.
+constexpr Entity everywhere = {-1, 0};
+
+/// Of "3,2".
+Entity parse_entity(const std::string& text) {
+  if (text.empty()) {
+    return everywhere;
+  }
+  const auto fail = [&text] {
+    throw Error("There is no entity '" + text +
+                "': give its dimension and tag, such as --entity 3,2 for Volume 2.");
+  };
+  Entity entity;
+  std::size_t dim_end = 0;
+  std::size_t tag_end = 0;
+  try {
+    entity.dim = std::stoi(text, &dim_end);
+    if (text.substr(dim_end, 1) != ",") {
+      fail();
+    }
+    entity.tag = std::stoi(text.substr(dim_end + 1), &tag_end);
+  } catch (const std::logic_error&) {
+    fail();
+  }
+  if (dim_end + 1 + tag_end != text.size() || entity.dim < 0 || entity.dim > 3) {
+    fail();
+  }
+  return entity;
+}
+
+void print_next_steps(const std::string& output) {
+  const std::string ending = fs::path(output).extension().string();
+  if (ending == ".vtu") {
+    std::cout << "To look at it: paraview " << output << '\n';
+    return;
+  }
+  std::cout << "To look at it: gmsh " << output << '\n';
+  if (ending == ".pos") {
+    std::cout << "As the background field of a model, in its .geo:\n"
+              << "  Merge \"" << output << "\";\n"
+              << "  Field[1] = PostView; Field[1].ViewIndex = 0; Background Field = 1;\n"
+              << "  Mesh.MeshSizeExtendFromBoundary = 0;\n";
+  }
+}
+
+void write_field(const FieldCommandArguments& arguments) {
+  const Entity entity = parse_entity(arguments.entity);
+  const std::vector<std::string> texts = size_function_texts(arguments.field);
+  if (texts.empty() && arguments.field.defaults_limit == 0.0) {
+    throw Error(
+        "There is no size function, hence no size field: give --size-function, --size-functions or "
+        "--defaults.");
+  }
+  check_view_ending(arguments.output);
+  if (fs::exists(arguments.output) && fs::exists(arguments.model) &&
+      fs::equivalent(arguments.output, arguments.model)) {
+    throw Error("The size field would be written over the model " + arguments.model +
+                ": name another output with -o.");
+  }
+  const GmshSession session(arguments.verbosity);
+  std::cout << "Reading " << arguments.model << std::endl;
+  open_model(arguments.model);
+  const FieldPointer field = make_field(arguments.field, texts);
+  check(meshgrow_field_set_progress(
+      field.get(),
+      [](const char* line, void*) {
+        std::cout << line << std::endl;
+        return 0;
+      },
+      nullptr));
+  const int dim = arguments.dim_2 ? 2 : arguments.dim_1 ? 1 : 0;
+  if (dim > 0) {
+    check(meshgrow_field_generate(field.get(), dim, 0));
+  }
+  // A field without its sources is not the one that was asked for.
+  check(meshgrow_field_set_option(field.get(), "strict", 1.0));
+  if (meshgrow_field_refresh(field.get()) != 0) {
+    const std::string problem = meshgrow_last_error();
+    throw Error(dim == 2 || problem.find(" no mesh") == std::string::npos
+                    ? problem
+                    : problem + " -1 meshes curves, -2 surfaces as well.");
+  }
+  std::size_t cells = 0;
+  check(meshgrow_field_write_view(field.get(), arguments.output.c_str(), entity.dim, entity.tag,
+                                  &cells));
+  std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
+  std::cout << "\nWrote " << arguments.output << ": " << grouped_digits(cells) << " cells, "
+            << rounded(static_cast<double>(fs::file_size(arguments.output)) / 1e6, 1) << " MB.\n";
+  print_next_steps(arguments.output);
+}
+
+}  // namespace
+
+void add_field_command(CLI::App& program) {
+  const auto arguments = std::make_shared<FieldCommandArguments>();
+  CLI::App& command =
+      *program.add_subcommand("field", "Write the size field, to look at or to use");
+  command.add_option("model", arguments->model, "What Gmsh can open, with the meshes of sources")
+      ->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  ".vtu (ParaView), .pos (Gmsh: also a background field) or .msh (Gmsh)")
+      ->required();
+  command.add_option(
+      "--entity", arguments->entity,
+      "The field of one entity, such as 3,2 for Volume 2 (default: the smallest size "
+      "that any function asks for)");
+  command.add_flag("-1", arguments->dim_1, "Mesh curves first, for sources without a mesh");
+  command.add_flag("-2", arguments->dim_2, "Mesh curves and surfaces first");
+  command.add_option("-v", arguments->verbosity, "Gmsh's verbosity, 0 to 99")
+      ->capture_default_str();
+  add_field_options(command, arguments->field);
+  command.callback([arguments] { write_field(*arguments); });
+}
+
+}  // namespace meshgrow::cli
