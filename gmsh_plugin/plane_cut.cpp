@@ -60,7 +60,7 @@ std::vector<Eigen::Vector2d> crossings(const Box& box, const Frame& frame) {
 struct OpenSquare {
   double a;  ///< of its middle, in the frame
   double b;
-  double half;
+  Eigen::Vector2d half;  ///< sides
   int divisions;
   std::array<double, 4> sizes;
 };
@@ -86,21 +86,24 @@ std::vector<CutSquare> cut_by_plane(const Box& box, const Vec3& point, const Vec
   if (cut.isEmpty() || cut.sizes().maxCoeff() <= 0.0) {
     return result;
   }
+  // As square as may be.
   const double edge = cut.sizes().maxCoeff() / resolution;
-  const auto count = [&](int axis) {
-    return std::max(1, static_cast<int>(std::ceil(cut.sizes()[axis] / edge - 1e-9)));
-  };
+  const Eigen::Array2i count = (cut.sizes() / edge).array().round().max(1.0).cast<int>();
+  const Eigen::Vector2d half = 0.5 * (cut.sizes().array() / count.cast<double>()).matrix();
   // An oblique plane cuts less than a rectangle out of the box.
   const auto is_in_box = [&](const OpenSquare& square) {
-    return box.exteriorDistance(frame.at(square.a, square.b)) <= 1.5 * square.half;
+    return box.exteriorDistance(frame.at(square.a, square.b)) <= square.half.norm();
   };
   std::vector<OpenSquare> open;
   std::vector<Vec3> points;
   std::vector<double> sizes;
-  for (int j = 0; j < count(1); ++j) {
-    for (int i = 0; i < count(0); ++i) {
-      const OpenSquare square = {
-          cut.min().x() + (i + 0.5) * edge, cut.min().y() + (j + 0.5) * edge, 0.5 * edge, 0, {}};
+  for (int j = 0; j < count[1]; ++j) {
+    for (int i = 0; i < count[0]; ++i) {
+      const OpenSquare square = {cut.min().x() + (2 * i + 1) * half.x(),
+                                 cut.min().y() + (2 * j + 1) * half.y(),
+                                 half,
+                                 0,
+                                 {}};
       if (is_in_box(square)) {
         open.push_back(square);
       }
@@ -110,8 +113,8 @@ std::vector<CutSquare> cut_by_plane(const Box& box, const Vec3& point, const Vec
     points.clear();
     for (const OpenSquare& square : squares) {
       for (int k = first; k < end; ++k) {
-        points.push_back(
-            frame.at(square.a + places[k][0] * square.half, square.b + places[k][1] * square.half));
+        points.push_back(frame.at(square.a + places[k][0] * square.half.x(),
+                                  square.b + places[k][1] * square.half.y()));
       }
     }
     sizes.resize(points.size());
@@ -136,8 +139,8 @@ std::vector<CutSquare> cut_by_plane(const Box& box, const Vec3& point, const Vec
         CutSquare done;
         done.sizes = s;
         for (int k = 0; k < 4; ++k) {
-          done.corners[k] = frame.at(square.a + places[k][0] * square.half,
-                                     square.b + places[k][1] * square.half);
+          done.corners[k] = frame.at(square.a + places[k][0] * square.half.x(),
+                                     square.b + places[k][1] * square.half.y());
         }
         if (std::all_of(s.begin(), s.end(), [](double size) { return std::isfinite(size); })) {
           result.push_back(done);
@@ -146,8 +149,8 @@ std::vector<CutSquare> cut_by_plane(const Box& box, const Vec3& point, const Vec
       }
       for (int k = 0; k < 4; ++k) {
         // Corner k of the square, the middles of its two sides there, and its own middle.
-        OpenSquare quarter = {square.a + 0.5 * places[k][0] * square.half,
-                              square.b + 0.5 * places[k][1] * square.half,
+        OpenSquare quarter = {square.a + 0.5 * places[k][0] * square.half.x(),
+                              square.b + 0.5 * places[k][1] * square.half.y(),
                               0.5 * square.half,
                               square.divisions + 1,
                               {}};
