@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include "number_text.h"
+#include "text_table.h"
 
 namespace meshgrow {
 
@@ -235,13 +235,6 @@ std::string significant(double value) {
   return shortest(value, 3);
 }
 
-/// Columns that count bytes of UTF-8 wrongly would not line up.
-std::size_t displayed_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-}
-
 }  // namespace
 
 int corner_count(ElementShape shape) { return shape_of(shape).corners; }
@@ -278,21 +271,7 @@ std::string report_table(const std::vector<NamedReport>& reports) {
                     percent(r.length_share_over_2), rounded(r.gamma_min, 3),
                     rounded(r.gamma_mean, 3), rounded(r.sicn_min, 3), rounded(r.sicn_mean, 3)});
   }
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], displayed_width(row[i]));
-    }
-  }
-  std::ostringstream text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - displayed_width(row[i]), ' ');
-      text << (i == 0 ? row[i] + padding : "  " + padding + row[i]);
-    }
-    text << '\n';
-  }
-  return text.str();
+  return text_table(rows);
 }
 
 }  // namespace meshgrow

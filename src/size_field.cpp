@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <sstream>
 
 #include "error.h"
 #include "expected_elements.h"
 #include "growth_law.h"
-#include "number_text.h"
 #include "parallel.h"
 #include "start_sizes/curvature_start_sizes.h"
 #include "start_sizes/fixed_start_sizes.h"
@@ -516,61 +514,6 @@ std::vector<SizeField::GroupSummary> SizeField::groups() const {
     result.push_back(std::move(summary));
   }
   return result;
-}
-
-std::string SizeField::summary() const {
-  std::ostringstream text;
-  for (std::size_t i = 0; i < functions_.size(); ++i) {
-    const SizeFunction& function = functions_[i];
-    text << function_name(i) << ": from " << entity_names(function.sources) << " into "
-         << entity_names(function.attachments) << ", growth " << shortest(function.growth_rate)
-         << ", limit " << shortest(function.size_limit);
-    if (function.kind == Kind::fixed) {
-      text << ", size " << shortest(function.start_size);
-    } else if (function.kind == Kind::curvature) {
-      text << ", angle " << shortest(function.angle);
-    } else if (function.kind == Kind::proximity) {
-      text << ", " << shortest(function.cells_per_gap) << " cells per gap";
-    }
-    if (function.min_size > 0.0) {
-      text << ", min " << shortest(function.min_size);
-    }
-    if (is_effective(i)) {
-      text << ", " << grouped_digits(facet_counts_[i]) << " facets";
-    }
-    text << (is_effective(i) ? "\n" : " (no effect: its sources have no mesh yet)\n");
-  }
-  std::size_t number = 0;
-  for (const GroupSummary& group : groups()) {
-    text << "Group " << ++number << ": " << group.entities.size() << " entities, functions";
-    for (const std::size_t function : group.functions) {
-      text << ' ' << function + 1;
-    }
-    text << ", " << grouped_digits(group.facets) << " facets";
-    const auto megabytes = [](std::size_t bytes) {
-      return rounded(static_cast<double>(bytes) / 1e6, 1) + " MB";
-    };
-    if (group.facets > 0) {
-      text << ", tree " << megabytes(group.tree_bytes) << " in " << rounded(group.tree_seconds, 2)
-           << " s";
-    }
-    if (group.has_grid) {
-      const BackgroundGrid::Statistics& grid = group.grid;
-      text << ", grid of " << grouped_digits(grid.interpolated_leaves + grid.exact_leaves)
-           << " cells (" << grouped_digits(grid.exact_leaves) << " exact), depth " << grid.depth
-           << ", " << megabytes(grid.bytes) << " in " << rounded(grid.seconds, 2) << " s";
-    } else if (group.facets > 0) {
-      text << ", no grid";
-    }
-    if (group.answers > 0) {
-      const double share =
-          static_cast<double>(group.exact_answers) / static_cast<double>(group.answers);
-      text << ", " << grouped_digits(group.answers) << " sizes answered, "
-           << rounded(100.0 * share, 0) << " % exactly";
-    }
-    text << '\n';
-  }
-  return text.str();
 }
 
 }  // namespace meshgrow

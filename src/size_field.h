@@ -164,6 +164,9 @@ class SizeField {
   };
   std::vector<GroupSummary> groups() const;
 
+  /// How many facets the function's sources have.
+  std::size_t facet_count(std::size_t function) const { return facet_counts_[function]; }
+
   /// A function as a group sees it. Inside a source volume a fixed function has its start size
   /// everywhere, since the distance to the source is zero there.
   struct Action {
@@ -197,7 +200,7 @@ class SizeField {
   /// build anything from.
   explicit SizeField(Parts parts);
 
-  /// Functions, groups and grids as lines of text for people.
+  /// Tables for people: see field_summary.h.
   std::string summary() const;
 
  private:
