@@ -410,3 +410,45 @@ def test_program_meshes_sources_when_told_to(box, tmp_path):
     result = run("field", box, "-2", "-o", path, "--size-function", grown)
     assert result.returncode == 0, result.stderr
     assert read_vtu(path)[2] > 0
+
+
+def test_flat_models_have_views_too(tmp_path):
+    """A view of them has no thickness in Gmsh's mesher, but cells have."""
+    square = models.square()
+    field = meshgrow.SizeField(tolerance=0.02)
+    field.add_fixed([square.left], [square.face], size=0.03, growth_rate=1.2, size_limit=0.1)
+    path = tmp_path / "sizes.pos"
+    field.write_view(path)
+    gmsh.merge(str(path))
+    points = points_in([0, 0, 0], [1, 1, 0])
+    points[:4, :2] = [[0, 0], [1, 1], [0, 1], [1, 0]]
+    expected = np.minimum(0.1, 0.03 + points[:, 0] / 6)
+    assert np.allclose(probe(gmsh.view.getTags()[-1], points), expected, rtol=0.05)
+    kind, nodes, values = list_data(field.add_view(kind="plane"))
+    assert np.allclose(nodes[..., 2], 0)
+    kind, nodes, values = list_data(field.add_view(kind="cells", entity=square.face))
+    assert len(nodes) > 1
+
+
+def test_example_of_stock_gmsh(tmp_path):
+    examples = os.path.join(os.path.dirname(__file__), "..", "..", "examples")
+    with open(os.path.join(examples, "stock_gmsh_view.geo")) as file:
+        text = file.read()
+    model = tmp_path / "stock_gmsh_view.geo"
+    model.write_text(text)
+    function = re.search(r"'(curvature .*)'", text).group(1)
+
+    def stock(output):
+        result = subprocess.run(stock_gmsh() + ["-3", model.name, "-o", output], cwd=tmp_path,
+                                capture_output=True, text=True)
+        assert result.returncode == 0, result.stdout + result.stderr
+        return tetrahedra(tmp_path / output)
+
+    without = stock("without.msh")
+    assert run("mesh", model, "-3", "-o", tmp_path / "direct.msh",
+               "--size-function", function).returncode == 0
+    assert run("field", model, "-o", tmp_path / "sizes.pos",
+               "--size-function", function).returncode == 0
+    with_view = stock("with.msh")
+    assert with_view > 5 * without
+    assert with_view == pytest.approx(tetrahedra(tmp_path / "direct.msh"), rel=0.1)
