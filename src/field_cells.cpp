@@ -55,16 +55,22 @@ std::shared_ptr<const BackgroundGrid> built_aside(const SizeField::Answering& an
   return std::make_shared<BackgroundGrid>(answering.tree, answering.size_limit, box, options);
 }
 
-/// Relative; what is shown need not be as good as what is answered.
-constexpr double shown_tolerance = 0.1;
+/// What is shown need not be as good as what is answered: at least so much may it differ, and this
+/// many times the tolerance of the field.
+constexpr double least_shown_tolerance = 0.1;
+constexpr double shown_tolerances = 2.0;
 
 constexpr int most_divisions = 8;
 
 /// Appends cells in which facets answer, with exact sizes at their corners.
 class ExactCells {
  public:
-  ExactCells(const SizeField::Answering& answering, const Box& box, FieldCells& result)
-      : answering_(answering), box_(box), result_(result) {}
+  ExactCells(const SizeField::Answering& answering, const Box& box, double tolerance,
+             FieldCells& result)
+      : answering_(answering),
+        box_(box),
+        tolerance_(std::max(least_shown_tolerance, shown_tolerances * tolerance)),
+        result_(result) {}
 
   void append(FieldCell cell) {
     cell.exact = true;
@@ -105,7 +111,7 @@ class ExactCells {
     for (int i = 0; i < 27; ++i) {
       const double between =
           trilinear(shown.sizes, 0.5 * (i % 3), 0.5 * (i / 3 % 3), 0.5 * (i / 9));
-      differs = differs || std::abs(between - sizes[i]) > shown_tolerance * sizes[i];
+      differs = differs || std::abs(between - sizes[i]) > tolerance_ * sizes[i];
     }
     if (!differs) {
       result_.cells.push_back(shown);
@@ -121,6 +127,7 @@ class ExactCells {
  private:
   const SizeField::Answering& answering_;
   const Box& box_;
+  double tolerance_;
   FieldCells& result_;
 };
 
@@ -170,7 +177,7 @@ FieldCells field_cells(const SizeField& field, const std::optional<Entity>& enti
                                              : built_aside(answering, box, field.options(), use);
   FieldCells result;
   result.cube = grid->grid_cube();
-  ExactCells exact_cells(answering, box, result);
+  ExactCells exact_cells(answering, box, field.options().tolerance, result);
   grid->for_each_leaf([&](const GridLeaf& leaf) {
     FieldCell cell;
     cell.lowest = leaf.lowest;

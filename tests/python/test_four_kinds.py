@@ -1,6 +1,7 @@
 """All four kinds together, defaults, and their texts, through Gmsh."""
 
 import os
+import re
 import subprocess
 
 import gmsh
@@ -142,7 +143,7 @@ def test_program_takes_all_kinds(tmp_path):
          "proximity source Volume{1} attach Volume{1} cells 2 between faces growth 1.3 limit 1"],
         capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
-    assert "Curvature size function 1: from Volume 1" in run.stdout
+    assert re.search("Curvature size function 1 +Volume 1 ", run.stdout)
     assert "2 cells per gap" in run.stdout
     assert (tmp_path / "plate.msh").exists()
 
@@ -154,7 +155,7 @@ def test_program_has_defaults(tmp_path):
                           str(tmp_path / "box.msh")], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert "Curvature size function 1" in run.stdout
-    assert "Proximity size function 2" in run.stdout and "limit 0.9" in run.stdout
+    assert re.search(r"Proximity size function 2 .* 0\.9 ", run.stdout)
 
 
 def test_mistake_in_a_text_is_told_with_its_position():
