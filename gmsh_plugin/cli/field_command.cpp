@@ -114,6 +114,7 @@ void write_field(const FieldCommandArguments& arguments) {
                     : problem + " -1 meshes curves, -2 surfaces as well.");
   }
   std::size_t cells = 0;
+  // The place of .mgf: meshgrow_field_save(field.get(), path) instead; and above, its ending.
   check(meshgrow_field_write_view(field.get(), arguments.output.c_str(), entity.dim, entity.tag,
                                   &cells));
   std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
