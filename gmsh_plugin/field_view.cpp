@@ -129,6 +129,15 @@ CutPlane default_plane(const Box& box) {
   return {box.center(), Vec3::Unit(axis)};
 }
 
+/// Sizes from grids jump a little from cell to cell: that is nothing to divide squares for.
+double plane_tolerance(const SizeField& field) {
+  constexpr double smooth = 0.01;
+  const std::vector<SizeField::GroupSummary> groups = field.groups();
+  const bool has_grid =
+      std::any_of(groups.begin(), groups.end(), [](const auto& group) { return group.has_grid; });
+  return has_grid ? std::max(smooth, field.options().tolerance) : smooth;
+}
+
 int add_plane(const SizeField& field, const ViewRequest& request) {
   const Box box = box_of(field, request.entity);
   if (box.isEmpty()) {
@@ -146,7 +155,7 @@ int add_plane(const SizeField& field, const ViewRequest& request) {
                 ": give a number from 1 to 1000.");
   }
   const std::vector<CutSquare> squares =
-      cut_by_plane(box, plane.point, plane.normal, request.resolution,
+      cut_by_plane(box, plane.point, plane.normal, request.resolution, plane_tolerance(field),
                    [&](const std::vector<Vec3>& points, double* sizes) {
                      sizes_at(field, request.entity, points, sizes);
                    });

@@ -7,7 +7,6 @@ namespace meshgrow {
 
 namespace {
 
-constexpr double tolerance = 0.01;
 constexpr int most_divisions = 6;
 
 /// A plane with axes, along those of the model where it can be.
@@ -69,14 +68,13 @@ struct OpenSquare {
 constexpr std::array<std::array<int, 2>, 9> places = {
     {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}}};
 
-bool differs(double size, double interpolated) {
-  return std::abs(size - interpolated) > tolerance * std::abs(size);
-}
-
 }  // namespace
 
 std::vector<CutSquare> cut_by_plane(const Box& box, const Vec3& point, const Vec3& normal,
-                                    int resolution, const SizesAt& sizes_at) {
+                                    int resolution, double tolerance, const SizesAt& sizes_at) {
+  const auto differs = [tolerance](double size, double interpolated) {
+    return std::abs(size - interpolated) > tolerance * std::abs(size);
+  };
   const Frame frame = frame_of(point, normal);
   Eigen::AlignedBox2d cut;
   for (const Eigen::Vector2d& crossing : crossings(box, frame)) {

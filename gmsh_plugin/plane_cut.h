@@ -20,10 +20,10 @@ using SizesAt = std::function<void(const std::vector<Vec3>& points, double* size
 
 /// Squares that fill the cut of the box by the plane through `point`, `resolution` of them along
 /// its longer side, divided in four as long as interpolation between the corners differs by more
-/// than 1 % at the middle of the square or of a side, up to six times. Squares with sizes that are
-/// not finite are left out; none if the plane misses the box.
+/// than `tolerance` (relative) at the middle of the square or of a side, up to six times. Squares
+/// with sizes that are not finite are left out; none if the plane misses the box.
 std::vector<CutSquare> cut_by_plane(const Box& box, const Vec3& point, const Vec3& normal,
-                                    int resolution, const SizesAt& sizes_at);
+                                    int resolution, double tolerance, const SizesAt& sizes_at);
 
 }  // namespace meshgrow
 
