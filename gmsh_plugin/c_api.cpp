@@ -76,6 +76,14 @@ meshgrow::ModelField& deref(meshgrow_field* field) {
   return field->model_field;
 }
 
+const SizeFunction& function_at(const meshgrow_field* field, size_t index) {
+  if (index >= meshgrow_field_function_count(field)) {
+    throw Error("There is no size function with the index " + std::to_string(index) +
+                ": give one from 0 to the count of functions less one.");
+  }
+  return field->model_field.field().functions()[index];
+}
+
 /// What functions of all kinds have.
 SizeFunction common(Kind kind, std::vector<Entity> sources, std::vector<Entity> attachments,
                     double growth_rate, double size_limit) {
@@ -318,12 +326,13 @@ size_t meshgrow_field_function_count(const meshgrow_field* field) {
 }
 
 char* meshgrow_field_function_name(const meshgrow_field* field, size_t index) {
+  return guarded(static_cast<char*>(nullptr),
+                 [&] { return copy_text(function_at(field, index).name); });
+}
+
+char* meshgrow_field_function_text(const meshgrow_field* field, size_t index) {
   return guarded(static_cast<char*>(nullptr), [&] {
-    if (index >= meshgrow_field_function_count(field)) {
-      throw Error("There is no size function with the index " + std::to_string(index) +
-                  ": give one from 0 to the count of functions less one.");
-    }
-    return copy_text(field->model_field.field().functions()[index].name);
+    return copy_text(meshgrow::size_function_text(function_at(field, index)));
   });
 }
 

@@ -97,6 +97,8 @@ MESHGROW_API size_t meshgrow_field_function_count(const meshgrow_field* field);
 /* The name of the function with this index, from 0; NULL on failure. To be freed by
  * meshgrow_free. */
 MESHGROW_API char* meshgrow_field_function_name(const meshgrow_field* field, size_t index);
+/* The same for its line of text. */
+MESHGROW_API char* meshgrow_field_function_text(const meshgrow_field* field, size_t index);
 MESHGROW_API int meshgrow_field_rename(meshgrow_field* field, const char* name,
                                        const char* new_name);
 /* Puts another definition, a line of text, in the place of a function; only what it acts on is

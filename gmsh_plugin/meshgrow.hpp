@@ -133,11 +133,7 @@ class SizeField {
 
   /// Of Gmsh's current model. Throws Error without libgmsh, before gmsh::initialize() and for a
   /// model without entities.
-  explicit SizeField(const Options& options = {}) : state_(std::make_unique<State>()) {
-    state_->field.reset(meshgrow_field_create());
-    if (!state_->field) {
-      throw Error(meshgrow_last_error());
-    }
+  explicit SizeField(const Options& options = {}) : SizeField(meshgrow_field_create()) {
     set_option("tolerance", options.tolerance);
     set_option("evaluator", static_cast<double>(options.evaluator));
     set_option("strict", options.strict ? 1.0 : 0.0);
@@ -151,46 +147,53 @@ class SizeField {
 
   /// The mesh on the sources (curves, surfaces) grows into the attachments, each layer of elements
   /// `growth_rate` >= 1 times the one before, up to `size_limit` > 0. Acts on all that bounds or is
-  /// embedded in the attachments as well.
-  void add_mesh(const DimTags& sources, const DimTags& attach, double growth_rate,
-                double size_limit, QuadSize quad_size = QuadSize::triangles) {
+  /// embedded in the attachments as well. Returns the function's name: `name`, or a number in the
+  /// order of adding if that is empty.
+  std::string add_mesh(const DimTags& sources, const DimTags& attach, double growth_rate,
+                       double size_limit, QuadSize quad_size = QuadSize::triangles,
+                       const std::string& name = {}) {
     const std::vector<int> from = detail::flat(sources);
     const std::vector<int> to = detail::flat(attach);
     detail::check(meshgrow_field_add_mesh(c_field(), from.data(), from.size(), to.data(), to.size(),
                                           growth_rate, size_limit, static_cast<int>(quad_size)));
+    return named(name);
   }
 
   /// The size `size` > 0 on the sources (points to volumes) grows likewise.
-  void add_fixed(const DimTags& sources, const DimTags& attach, double size, double growth_rate,
-                 double size_limit) {
+  std::string add_fixed(const DimTags& sources, const DimTags& attach, double size,
+                        double growth_rate, double size_limit, const std::string& name = {}) {
     const std::vector<int> from = detail::flat(sources);
     const std::vector<int> to = detail::flat(attach);
     detail::check(meshgrow_field_add_fixed(c_field(), from.data(), from.size(), to.data(),
                                            to.size(), size, growth_rate, size_limit));
+    return named(name);
   }
 
   /// The curvature of the sources (curves, surfaces; a volume stands for its faces) grows likewise:
   /// an edge of an element may turn by `angle` degrees. Sizes below `min_size` become `min_size`.
-  void add_curvature(const DimTags& sources, const DimTags& attach, double angle,
-                     double growth_rate, double size_limit, double min_size = 0.0) {
+  std::string add_curvature(const DimTags& sources, const DimTags& attach, double angle,
+                            double growth_rate, double size_limit, double min_size = 0.0,
+                            const std::string& name = {}) {
     const std::vector<int> from = detail::flat(sources);
     const std::vector<int> to = detail::flat(attach);
     detail::check(meshgrow_field_add_curvature(c_field(), from.data(), from.size(), to.data(),
                                                to.size(), angle, growth_rate, size_limit,
                                                min_size));
+    return named(name);
   }
 
   /// The gaps between the sources (a volume stands for its faces) and what is opposite grow
   /// likewise: `cells_per_gap` > 0 elements, not necessarily whole, fit into each. Gaps that ask
   /// for less than `min_size` are ignored.
-  void add_proximity(const DimTags& sources, const DimTags& attach, double cells_per_gap,
-                     double growth_rate, double size_limit, double min_size = 0.0,
-                     Between between = Between::automatic) {
+  std::string add_proximity(const DimTags& sources, const DimTags& attach, double cells_per_gap,
+                            double growth_rate, double size_limit, double min_size = 0.0,
+                            Between between = Between::automatic, const std::string& name = {}) {
     const std::vector<int> from = detail::flat(sources);
     const std::vector<int> to = detail::flat(attach);
     detail::check(meshgrow_field_add_proximity(c_field(), from.data(), from.size(), to.data(),
                                                to.size(), cells_per_gap, growth_rate, size_limit,
                                                min_size, static_cast<int>(between)));
+    return named(name);
   }
 
   /// What suits most models: curvature (18 degrees) and proximity (3 cells per gap, between faces
@@ -204,8 +207,41 @@ class SizeField {
   }
 
   /// A size function by its line of text, the same as on the command line:
-  /// "mesh source Surface{7} attach Volume{2} growth 1.2 limit 2".
-  void add(const std::string& text) { detail::check(meshgrow_field_add(c_field(), text.c_str())); }
+  /// "mesh source Surface{7} attach Volume{2} growth 1.2 limit 2". It may hold `name inner`.
+  /// Returns the name.
+  std::string add(const std::string& text) {
+    detail::check(meshgrow_field_add(c_field(), text.c_str()));
+    return named("");
+  }
+
+  /// The size functions in the order of adding: names and lines of text.
+  std::vector<std::pair<std::string, std::string>> functions() const {
+    std::vector<std::pair<std::string, std::string>> result;
+    for (std::size_t i = 0; i < meshgrow_field_function_count(c_field()); ++i) {
+      result.emplace_back(detail::take_text(meshgrow_field_function_name(c_field(), i)),
+                          detail::take_text(meshgrow_field_function_text(c_field(), i)));
+    }
+    return result;
+  }
+  /// Puts another definition, a line of text, in the place of a function. Only what it acts on is
+  /// built anew; a registered field acts as changed at once.
+  void modify(const std::string& name, const std::string& text) {
+    check(meshgrow_field_modify(c_field(), name.c_str(), text.c_str()));
+  }
+  void remove(const std::string& name) { check(meshgrow_field_remove(c_field(), name.c_str())); }
+  void rename(const std::string& name, const std::string& new_name) {
+    detail::check(meshgrow_field_rename(c_field(), name.c_str(), new_name.c_str()));
+  }
+
+  /// Saves the field, with grids unless the evaluator is exact, to a file (.mgf) that is complete
+  /// or not there.
+  void save(const std::string& path) { check(meshgrow_field_save(c_field(), path.c_str())); }
+  /// A saved field, mapped into memory. It answers as the saved one did, to the bit, and can be
+  /// asked, shown and registered (with a model that has the entities it acts on), but not changed.
+  /// Needs no Gmsh unless registered.
+  static SizeField load(const std::string& path) {
+    return SizeField(meshgrow_field_load(path.c_str()));
+  }
 
   /// Meshes the model up to dimension `dim` with Gmsh's own algorithms, sources first. What had a
   /// mesh before keeps it: node tags, coordinates to the bit, connectivity. With `remesh`, all that
@@ -361,6 +397,30 @@ class SizeField {
       }
     }
   };
+
+  explicit SizeField(meshgrow_field* field) : state_(std::make_unique<State>()) {
+    if (field == nullptr) {
+      throw Error(meshgrow_last_error());
+    }
+    state_->field.reset(field);
+  }
+
+  /// Names the function that was added last, if `name` is not empty; if it cannot have this name,
+  /// there is none. Returns its name.
+  std::string named(const std::string& name) {
+    const std::size_t last = meshgrow_field_function_count(c_field()) - 1;
+    const std::string number = detail::take_text(meshgrow_field_function_name(c_field(), last));
+    if (name.empty()) {
+      return number;
+    }
+    try {
+      rename(number, name);
+    } catch (...) {
+      meshgrow_field_remove(c_field(), number.c_str());
+      throw;
+    }
+    return name;
+  }
 
   void check(int failed) const {
     state_->raise_again();

@@ -451,6 +451,7 @@ void ModelField::read_if_needed() {
     return;
   }
   check_model();
+  forget_kept_sources();
   read_sources(unread);
   for (const std::size_t function : unread) {
     reported_.erase(function);

@@ -107,6 +107,36 @@ void all_kinds_can_be_added_and_wrong_ones_throw() {
   expect_in("tolerance", thrown<meshgrow::Error>([&] { meshgrow::SizeField bad(options); }));
 }
 
+void functions_have_names_and_are_changed_by_them() {
+  make_box("names");
+  meshgrow::SizeField field;
+  const std::string first = field.add_fixed(source, all, 0.05, 1.3, 0.3);
+  expect(field.add_fixed(source, all, 0.2, 1.3, 0.3, "coarse") == "coarse", "a given name");
+  expect_in("coarse", thrown<meshgrow::Error>(
+                          [&] { field.add_fixed(source, all, 0.1, 1.3, 0.3, "coarse"); }));
+  expect(field.functions().size() == 2 && field.functions()[1].first == "coarse", "two functions");
+  field.rename(first, "fine");
+  field.modify("fine", "fixed source Surface{1} attach Volume{1} size 0.1 growth 1.3 limit 0.3");
+  const std::vector<double> on_source = {0, 0.5, 0.5};
+  expect(std::abs(field.exact_size(3, volume, on_source)[0] - 0.1) < 1e-12, "modified");
+  field.remove("fine");
+  expect(std::abs(field.exact_size(3, volume, on_source)[0] - 0.2) < 1e-12, "removed");
+  expect_in("0.2", field.functions()[0].second);
+}
+
+void a_saved_field_answers_the_same() {
+  make_box("saved");
+  meshgrow::SizeField field = grown_from_the_source();
+  const std::string path = "cpp_program_" + std::string(GMSH_API_VERSION) + ".mgf";
+  field.save(path);
+  const std::vector<double> points = {0.1, 0.5, 0.5, 0.7, 0.2, 0.3};
+  const meshgrow::SizeField loaded = meshgrow::SizeField::load(path);
+  expect(loaded.size(3, volume, points) == field.size(3, volume, points), "sizes of a file");
+  expect(loaded(3, volume, 0.1, 0.5, 0.5) == loaded.size(3, volume, points)[0], "called");
+  std::remove(path.c_str());
+  expect_in(path, thrown<meshgrow::Error>([&] { meshgrow::SizeField::load(path); }));
+}
+
 void sizes_are_answered() {
   make_box("sizes");
   const meshgrow::SizeField field = grown_from_the_source();
@@ -230,6 +260,8 @@ int main() {
   gmsh::initialize();
   gmsh::option::setNumber("General.Terminal", 0);
   all_kinds_can_be_added_and_wrong_ones_throw();
+  functions_have_names_and_are_changed_by_them();
+  a_saved_field_answers_the_same();
   sizes_are_answered();
   a_field_is_a_size_callback();
   both_signatures_of_gmsh_take_a_field();

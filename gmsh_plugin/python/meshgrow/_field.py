@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import operator
-from typing import Any, Callable, Dict, Optional
+import os
+from typing import Any, Callable, Dict, Optional, Union
 
 import numpy.typing as npt
 
@@ -76,49 +77,57 @@ class SizeField:
         check(lib.meshgrow_field_set_option(self._handle, name.encode(), float(value)))
 
     def add_mesh(self, sources: DimTags, attach: DimTags, growth_rate: float = 1.2,
-                 size_limit: Optional[float] = None, quad_size: str = "triangles") -> None:
+                 size_limit: Optional[float] = None, quad_size: str = "triangles",
+                 name: Optional[str] = None) -> str:
         """The mesh on the sources (curves, surfaces) grows into the attachments.
 
         Each layer of elements is ``growth_rate`` (>= 1) times the one before, up to ``size_limit``
         (> 0). Acts on all that bounds or is embedded in the attachments as well. ``quad_size`` is
         ``"triangles"`` (a quadrilateral by its two triangles, diagonal included) or ``"sides"``.
+        Returns the name: ``name``, or a number in the order of adding.
         """
         if quad_size not in ("triangles", "sides"):
             raise ValueError('quad_size must be "triangles" or "sides", not %r' % (quad_size,))
         check(lib.meshgrow_field_add_mesh(
             self._handle, *dim_tags(sources), *dim_tags(attach), growth_rate, _limit(size_limit),
             int(quad_size == "sides")))
+        return self._named(name)
 
     def add_fixed(self, sources: DimTags, attach: DimTags, size: float, growth_rate: float = 1.2,
-                  size_limit: Optional[float] = None) -> None:
-        """The size ``size`` (> 0) on the sources (points to volumes) grows into the attachments."""
+                  size_limit: Optional[float] = None, name: Optional[str] = None) -> str:
+        """The size ``size`` (> 0) on the sources (points to volumes) grows into the attachments.
+        Returns the name."""
         check(lib.meshgrow_field_add_fixed(
             self._handle, *dim_tags(sources), *dim_tags(attach), size, growth_rate,
             _limit(size_limit)))
+        return self._named(name)
 
     def add_curvature(self, sources: DimTags, attach: DimTags, angle: float = 18,
                       growth_rate: float = 1.2, size_limit: Optional[float] = None,
-                      min_size: float = 0.0) -> None:
+                      min_size: float = 0.0, name: Optional[str] = None) -> str:
         """The curvature of the sources (curves, surfaces) grows into the attachments.
 
         An edge of an element may turn by ``angle`` degrees: the size is 2 sin(angle / 2) over the
         largest curvature, but not below ``min_size``. A volume stands for its faces, a surface in a
         model without volumes for its curves as well. Unmeshed sources are sampled, read only.
+        Returns the name.
         """
         check(lib.meshgrow_field_add_curvature(
             self._handle, *dim_tags(sources), *dim_tags(attach), angle, growth_rate,
             _limit(size_limit), min_size))
+        return self._named(name)
 
     def add_proximity(self, sources: DimTags, attach: DimTags, cells_per_gap: float = 3,
                       growth_rate: float = 1.2, size_limit: Optional[float] = None,
-                      min_size: float = 0.0, between: Optional[str] = None) -> None:
+                      min_size: float = 0.0, between: Optional[str] = None,
+                      name: Optional[str] = None) -> str:
         """The gaps between the sources and what is opposite grow into the attachments.
 
         ``cells_per_gap`` (> 0, need not be whole) elements fit into each gap, measured through the
         attachments: ``between`` ``"faces"`` of attached volumes, ``"edges"`` of surfaces (attached,
         or bounding an attached volume) or ``"both"``. None takes faces if a volume is attached and
         not all sources are curves, else edges. A volume stands for its faces. Gaps that ask for
-        less than ``min_size`` are ignored.
+        less than ``min_size`` are ignored. Returns the name.
         """
         names = (None, "faces", "edges", "both")
         if between not in names:
@@ -127,6 +136,7 @@ class SizeField:
         check(lib.meshgrow_field_add_proximity(
             self._handle, *dim_tags(sources), *dim_tags(attach), cells_per_gap, growth_rate,
             _limit(size_limit), min_size, names.index(between)))
+        return self._named(name)
 
     def create_defaults(self, attach: Optional[DimTags] = None, growth_rate: float = 1.2,
                         size_limit: Optional[float] = None, min_size: float = 0.0) -> None:
@@ -138,10 +148,61 @@ class SizeField:
         check(lib.meshgrow_field_create_defaults(
             self._handle, *dim_tags(attach or ()), growth_rate, _limit(size_limit), min_size))
 
-    def add(self, text: str) -> None:
+    def add(self, text: str) -> str:
         """A size function by its line of text, the same as on the command line:
-        ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``."""
+        ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``. It may hold ``name inner``
+        or ``name "inner wall"``. Returns the name."""
         check(lib.meshgrow_field_add(self._handle, text.encode()))
+        return self._name(lib.meshgrow_field_function_count(self._handle) - 1)
+
+    def _name(self, index: int) -> str:
+        return take_text(lib.meshgrow_field_function_name(self._handle, index))
+
+    def _named(self, name: Optional[str]) -> str:
+        """Names the function that was added last; if it cannot have this name, there is none."""
+        number = self._name(lib.meshgrow_field_function_count(self._handle) - 1)
+        if name is None:
+            return number
+        try:
+            self.rename(number, name)
+        except BaseException:
+            self.remove(number)
+            raise
+        return name
+
+    def functions(self) -> Dict[str, str]:
+        """The size functions in the order of adding: name -> line of text."""
+        return {self._name(i): take_text(lib.meshgrow_field_function_text(self._handle, i))
+                for i in range(lib.meshgrow_field_function_count(self._handle))}
+
+    def modify(self, name: str, text: str) -> None:
+        """Puts another definition, a line of text, in the place of a function. Only what it acts on
+        is built anew; a registered field acts as changed at once."""
+        self._check(lib.meshgrow_field_modify(self._handle, name.encode(), text.encode()))
+
+    def remove(self, name: str) -> None:
+        """Takes a function away."""
+        self._check(lib.meshgrow_field_remove(self._handle, name.encode()))
+
+    def rename(self, name: str, new_name: str) -> None:
+        """Gives a function another name."""
+        check(lib.meshgrow_field_rename(self._handle, name.encode(), new_name.encode()))
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Saves the field, with grids unless the evaluator is exact, to a file (.mgf) that is
+        complete or not there."""
+        self._check(lib.meshgrow_field_save(self._handle, os.fsencode(path)))
+
+    @classmethod
+    def load(cls, path: Union[str, os.PathLike[str]]) -> SizeField:
+        """A saved field, mapped into memory. It answers as the saved one did, to the bit, and can be
+        asked, shown and registered (with a model that has the entities it acts on), but not changed.
+        Needs no gmsh unless registered."""
+        field = cls.__new__(cls)
+        field._raised = Raised()
+        field._handle = lib.meshgrow_field_load(os.fsencode(path))
+        check(not field._handle)
+        return field
 
     def generate(self, dim: int = 3, remesh: bool = False) -> None:
         """Meshes up to dimension ``dim`` with Gmsh's own algorithms, sources first.
