@@ -431,9 +431,14 @@ void ModelField::expect_late_sources(bool wait_for_meshes) {
       nodes.emplace();
     }
     const std::vector<Entity> unmeshed = unmeshed_sources(i);
-    late_[i] = {read_meshed(i, *nodes),
-                !strict_ && std::any_of(unmeshed.begin(), unmeshed.end(),
-                                        [before](const Entity& e) { return e.dim < before; })};
+    const auto was_read = read_as_.find(i);
+    LateSources& late = late_[i];
+    late.before = read_meshed(i, *nodes);
+    for (const Entity& source : unmeshed) {
+      const bool is_lost = was_read != read_as_.end() && was_read->second.at(source) != 0;
+      late.has_lost |= is_lost;
+      late.waits_for_meshes |= !strict_ && !is_lost && source.dim < before;
+    }
   }
 }
 
@@ -604,7 +609,7 @@ void ModelField::read_late_sources(int dim) {
   MeshFingerprints fingerprints;
   for (const auto& [function, late] : late_) {
     std::vector<FacetedSource> sources;
-    bool is_lost = false;
+    bool is_complete = true;
     for (const Entity& source : field_.functions()[function].sources) {
       const auto before =
           std::find_if(late.before.begin(), late.before.end(),
@@ -618,11 +623,11 @@ void ModelField::read_late_sources(int dim) {
       } else if (before != late.before.end()) {
         sources.push_back(*before);
       } else {
-        is_lost |= read_as_.at(function).at(source) != 0;
+        is_complete = false;
       }
     }
-    if (is_lost) {
-      continue;  // Gmsh had thrown away a mesh before the first size was asked for: as read last
+    if (late.has_lost && !is_complete) {
+      continue;
     }
     set_sources(function, sources);
     if (late.waits_for_meshes && dim > highest(field_.functions()[function].sources)) {

@@ -182,6 +182,9 @@ class ModelField {
   struct LateSources {
     std::vector<FacetedSource> before;
     bool waits_for_meshes = false;  ///< some had none
+    /// Gmsh had thrown away some before the first size was asked for: until all have a mesh again,
+    /// the function stays as it was read last.
+    bool has_lost = false;
   };
   std::map<std::size_t, LateSources> late_;
   std::map<std::size_t, std::map<Entity, std::uint64_t>> read_as_;  ///< mesh_fingerprint.h
