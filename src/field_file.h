@@ -36,7 +36,7 @@ namespace meshgrow {
 //                  effect; u64: its facets
 //     u64        count of groups, and for each
 //                  u64: count of its functions, and for each u64: index; u8: 1 inside its source
-//                  entities; f64: size limit; f64: seconds of building; the tree; u8: 1 if there is
+//                  entities; f64: size limit; the tree; u8: 1 if there is
 //                  a grid; the grid
 //     tree       6 f64: box; 3 f64: centre; f64: unit; f64: largest slope; 7 arrays:
 //       facets     96 bytes: 9 f64 corners, i32 count of corners, 4 bytes 0, f64 start size, f64
@@ -48,7 +48,7 @@ namespace meshgrow {
 //       blocks     512 bytes: FacetBlock (simd/wide_tree.h)
 //       entries    u32: where each block hangs
 //     grid       f64: size limit; 3 f64: lowest corner; f64: edge; u32: depth of the table;
-//                u32: depth; f64: seconds it took to build; 5 arrays:
+//                u32: depth; 5 arrays:
 //       blocks     8 u32: codes of the children, by the bits x, y, z; two bits of kind above 30 of
 //                  index (grid_nodes.h); the first stands above the root
 //       corners    8 f32: sizes at the corners of an interpolated cell
@@ -61,9 +61,10 @@ namespace meshgrow {
 // Blocks are checked when they are first touched, by whoever asks for a size: a damaged one throws
 // Error then.
 
-/// Saves the field as it is built: it answers the same to the bit when it is loaded. The file is
-/// written beside and moved into place when it is complete. Throws Error if a group is not built,
-/// or the file cannot be written.
+/// Saves the field as it is built: it answers the same to the bit when it is loaded. Equal fields
+/// make equal files; so how long building took is not in them. The file is written beside and moved
+/// into place when it is complete. Throws Error if a group is not built, or the file cannot be
+/// written.
 void save_field(const SizeField& field, const std::string& path);
 
 /// Maps a saved field, in a millisecond for a million facets. Throws Error for

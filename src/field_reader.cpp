@@ -121,7 +121,6 @@ class Reader {
     }
     result.entities = entities();
     result.size_limit = directory_.number<double>();
-    result.tree_seconds = directory_.number<double>();
     where_ = path_ + ", group " + std::to_string(index + 1);
     result.tree = std::make_shared<FacetTree>(tree());
     if (directory_.number<std::uint8_t>() != 0) {
@@ -197,7 +196,6 @@ class Reader {
     result.cube.edge = directory_.number<double>();
     result.table_depth = static_cast<int>(directory_.number<std::uint32_t>());
     result.statistics.depth = static_cast<int>(directory_.number<std::uint32_t>());
-    result.statistics.seconds = directory_.number<double>();
     const auto blocks = place<GridBlock>();
     const auto corners = place<GridCorners>();
     const auto begins = place<std::uint32_t>();

@@ -120,7 +120,6 @@ class Writer {
     }
     entities(part.entities);
     directory_.number(part.size_limit);
-    directory_.number(part.tree_seconds);
     const StoredTree& tree = part.tree->stored();
     box(tree.box);
     vector(tree.centre);
@@ -145,7 +144,6 @@ class Writer {
     directory_.number(grid.cube.edge);
     directory_.number(static_cast<std::uint32_t>(grid.table_depth));
     directory_.number(static_cast<std::uint32_t>(grid.statistics.depth));
-    directory_.number(grid.statistics.seconds);
     array(grid.blocks);
     array(grid.corners);
     array(grid.exact_begin);

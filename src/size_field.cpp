@@ -460,8 +460,8 @@ SizeField::Parts SizeField::parts() const {
     if (group.changed || !group.tree) {
       throw Error("The size field has changed since it was built: build it before saving it.");
     }
-    parts.groups.push_back({group.actions, group.entities, group.size_limit, group.tree,
-                            group.tree_seconds, group.grid});
+    parts.groups.push_back(
+        {group.actions, group.entities, group.size_limit, group.tree, group.grid});
   }
   return parts;
 }
@@ -483,7 +483,6 @@ SizeField::SizeField(Parts parts)
     group.changed = false;
     group.size_limit = part.size_limit;
     group.tree = std::move(part.tree);
-    group.tree_seconds = part.tree_seconds;
     group.grid = std::move(part.grid);
     groups_.push_back(std::move(group));
   }

@@ -183,7 +183,6 @@ class SizeField {
     std::vector<Entity> entities;
     double size_limit = no_size;
     std::shared_ptr<const FacetTree> tree;
-    double tree_seconds = 0.0;
     std::shared_ptr<const BackgroundGrid> grid;  ///< null if there is none
   };
   struct Parts {

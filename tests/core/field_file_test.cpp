@@ -168,7 +168,20 @@ TEST_F(FieldFile, KeepsFunctionsGroupsAndModel) {
   const SizeField field = ball_field(2000);
   save_field(field, path("a.mgf"));
   const SizeField loaded = load_field(path("a.mgf"));
-  EXPECT_EQ(loaded.summary(), field.summary());
+  ASSERT_EQ(loaded.groups().size(), field.groups().size());
+  for (std::size_t i = 0; i < loaded.groups().size(); ++i) {
+    const SizeField::GroupSummary a = loaded.groups()[i];
+    const SizeField::GroupSummary b = field.groups()[i];
+    EXPECT_EQ(a.entities, b.entities);
+    EXPECT_EQ(a.functions, b.functions);
+    EXPECT_EQ(a.facets, b.facets);
+    EXPECT_EQ(a.size_limit, b.size_limit);
+    EXPECT_EQ(a.tree_bytes, b.tree_bytes);
+    EXPECT_EQ(a.grid.interpolated_leaves, b.grid.interpolated_leaves);
+    EXPECT_EQ(a.grid.exact_leaves, b.grid.exact_leaves);
+    EXPECT_EQ(a.grid.depth, b.grid.depth);
+    EXPECT_EQ(a.grid.bytes, b.grid.bytes);
+  }
   ASSERT_EQ(loaded.functions().size(), 2u);
   EXPECT_EQ(loaded.functions()[0].growth_rate, 1.2345678901234567);
   EXPECT_TRUE(loaded.is_effective(0));
@@ -179,16 +192,18 @@ TEST_F(FieldFile, KeepsFunctionsGroupsAndModel) {
   EXPECT_EQ(loaded.topology().entities(), field.topology().entities());
 }
 
-TEST_F(FieldFile, SavingAgainGivesTheSameBytes) {
+TEST_F(FieldFile, EqualFieldsMakeEqualFiles) {
   const SizeField field = ball_field(2000);
   save_field(field, path("a.mgf"));
   save_field(field, path("b.mgf"));
   save_field(load_field(path("a.mgf")), path("c.mgf"));
+  save_field(ball_field(2000), path("d.mgf"));
   const std::string bytes = read(path("a.mgf"));
   EXPECT_EQ(bytes.substr(0, 8), "\x89MGF\r\n\x1a\n");
   EXPECT_EQ(number_at(bytes, 16), bytes.size());
   EXPECT_TRUE(bytes == read(path("b.mgf")));
   EXPECT_TRUE(bytes == read(path("c.mgf")));
+  EXPECT_TRUE(bytes == read(path("d.mgf")));
   EXPECT_TRUE(is_field_file(path("a.mgf")));
 }
 
