@@ -10,6 +10,7 @@
 #include "c_results.h"
 #include "error.h"
 #include "field_arguments.h"
+#include "field_file.h"
 #include "field_view.h"
 #include "gmsh_session.h"
 #include "model_file.h"
@@ -61,10 +62,19 @@ Entity parse_entity(const std::string& text) {
   return entity;
 }
 
+bool is_saved_field(const std::string& path) { return fs::path(path).extension() == ".mgf"; }
+
 void print_next_steps(const std::string& output) {
   const std::string ending = fs::path(output).extension().string();
   if (ending == ".vtu") {
     std::cout << "To look at it: paraview " << output << '\n';
+    return;
+  }
+  if (is_saved_field(output)) {
+    std::cout << "In Python: field = meshgrow.SizeField.load(\"" << output << "\")\n"
+              << "In the .geo of an unchanged Gmsh:\n"
+              << "  Field[1] = ExternalProcess; Field[1].CommandLine = \"meshgrow serve " << output
+              << "\";\n  Background Field = 1; Mesh.MeshSizeExtendFromBoundary = 0;\n";
     return;
   }
   std::cout << "To look at it: gmsh " << output << '\n';
@@ -76,24 +86,12 @@ void print_next_steps(const std::string& output) {
   }
 }
 
-void write_field(const FieldCommandArguments& arguments) {
-  const Entity entity = parse_entity(arguments.entity);
-  const std::vector<std::string> texts = size_function_texts(arguments.field);
-  if (texts.empty() && arguments.field.defaults_limit == 0.0) {
-    throw Error(
-        "There is no size function, hence no size field: give --size-function, --size-functions or "
-        "--defaults.");
-  }
-  check_view_ending(arguments.output);
-  if (fs::exists(arguments.output) && fs::exists(arguments.model) &&
-      fs::equivalent(arguments.output, arguments.model)) {
-    throw Error("The size field would be written over the model " + arguments.model +
-                ": name another output with -o.");
-  }
-  const GmshSession session(arguments.verbosity);
+/// The field of a model, with all its sources. Needs Gmsh.
+FieldPointer field_of_model(const FieldCommandArguments& arguments,
+                            const std::vector<std::string>& texts) {
   std::cout << "Reading " << arguments.model << std::endl;
   open_model(arguments.model);
-  const FieldPointer field = make_field(arguments.field, texts);
+  FieldPointer field = make_field(arguments.field, texts);
   check(meshgrow_field_set_progress(
       field.get(),
       [](const char* line, void*) {
@@ -113,13 +111,56 @@ void write_field(const FieldCommandArguments& arguments) {
                     ? problem
                     : problem + " -1 meshes curves, -2 surfaces as well.");
   }
+  return field;
+}
+
+/// Writes in the format of the ending, and tells what was written.
+void write(meshgrow_field* field, const std::string& output, const Entity& entity) {
   std::size_t cells = 0;
-  // The place of .mgf: meshgrow_field_save(field.get(), path) instead; and above, its ending.
-  check(meshgrow_field_write_view(field.get(), arguments.output.c_str(), entity.dim, entity.tag,
-                                  &cells));
-  std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
-  std::cout << "\nWrote " << arguments.output << ": " << grouped_digits(cells) << " cells, "
-            << rounded(static_cast<double>(fs::file_size(arguments.output)) / 1e6, 1) << " MB.\n";
+  if (is_saved_field(output)) {
+    check(meshgrow_field_save(field, output.c_str()));
+  } else {
+    check(meshgrow_field_write_view(field, output.c_str(), entity.dim, entity.tag, &cells));
+  }
+  std::cout << '\n' << take_text(meshgrow_field_summary(field)) << "\nWrote " << output << ": ";
+  if (cells > 0) {
+    std::cout << grouped_digits(cells) << " cells, ";
+  }
+  std::cout << rounded(static_cast<double>(fs::file_size(output)) / 1e6, 1) << " MB.\n";
+}
+
+void write_field(const FieldCommandArguments& arguments) {
+  const Entity entity = parse_entity(arguments.entity);
+  const std::vector<std::string> texts = size_function_texts(arguments.field);
+  const bool has_functions = !texts.empty() || arguments.field.defaults_limit != 0.0;
+  const bool from_file = is_field_file(arguments.model);
+  if (from_file && has_functions) {
+    throw Error(arguments.model +
+                " is a size field with functions of its own: give it without size functions.");
+  }
+  if (!from_file && !has_functions) {
+    throw Error(
+        "There is no size function, hence no size field: give --size-function, --size-functions or "
+        "--defaults.");
+  }
+  if (!is_saved_field(arguments.output)) {
+    check_view_ending(arguments.output);
+  } else if (entity.dim >= 0) {
+    throw Error("A saved field (.mgf) is that of all entities: leave out --entity.");
+  }
+  if (fs::exists(arguments.output) && fs::exists(arguments.model) &&
+      fs::equivalent(arguments.output, arguments.model)) {
+    throw Error("The size field would be written over the model " + arguments.model +
+                ": name another output with -o.");
+  }
+  if (from_file) {
+    const FieldPointer field(meshgrow_field_load(arguments.model.c_str()));
+    check(field ? 0 : 1);
+    write(field.get(), arguments.output, entity);
+  } else {
+    const GmshSession session(arguments.verbosity);
+    write(field_of_model(arguments, texts).get(), arguments.output, entity);
+  }
   print_next_steps(arguments.output);
 }
 
@@ -129,11 +170,14 @@ void add_field_command(CLI::App& program) {
   const auto arguments = std::make_shared<FieldCommandArguments>();
   CLI::App& command =
       *program.add_subcommand("field", "Write the size field, to look at or to use");
-  command.add_option("model", arguments->model, "What Gmsh can open, with the meshes of sources")
+  command
+      .add_option("model", arguments->model,
+                  "What Gmsh can open, with the meshes of sources; or a saved field (.mgf)")
       ->required();
   command
       .add_option("-o,--output", arguments->output,
-                  ".vtu (ParaView), .pos (Gmsh: also a background field) or .msh (Gmsh)")
+                  ".vtu (ParaView), .pos (Gmsh: also a background field), .msh (Gmsh) or .mgf "
+                  "(to be loaded, served or written as another)")
       ->required();
   command.add_option(
       "--entity", arguments->entity,
