@@ -15,6 +15,7 @@
 #include "model_field.h"
 #include "model_reader.h"
 #include "size_function_text.h"
+#include "worst_places.h"
 
 struct meshgrow_field {
   meshgrow_field() = default;
@@ -209,6 +210,38 @@ json summary_json(const meshgrow::SizeField& field) {
     groups.push_back(entry);
   }
   return {{"functions", functions}, {"groups", groups}};
+}
+
+/// What a report is about; checks that these entities are there.
+meshgrow::ReportMesh report_mesh(int dim, const int* entities, size_t entities_n) {
+  if (dim != 2 && dim != 3) {
+    throw Error("A report is about dimension 2 or 3, not " + std::to_string(dim) + ".");
+  }
+  meshgrow::gmsh::require_gmsh();
+  const std::vector<Entity> asked = entities_of(entities, entities_n);
+  const meshgrow::Topology topology = meshgrow::read_topology();
+  for (const Entity& entity : asked) {
+    if (entity.dim != dim || !topology.contains(entity)) {
+      throw Error(meshgrow::entity_name(entity) + " is not a " + meshgrow::dimension_name(dim) +
+                  " of the model: check its dimension and tag.");
+    }
+  }
+  return meshgrow::read_report_mesh(dim, asked);
+}
+
+/// The sizes of the field, changed as Gmsh changes every size that it is told.
+meshgrow::SizeAsked size_asked_of(meshgrow_field* field) {
+  if (field == nullptr) {
+    return {};
+  }
+  deref(field).refresh_if_needed();
+  const double smallest = meshgrow::gmsh::option("Mesh.MeshSizeMin");
+  const double largest = std::max(smallest, meshgrow::gmsh::option("Mesh.MeshSizeMax"));
+  const double factor = meshgrow::gmsh::option("Mesh.MeshSizeFactor");
+  return [=](const Entity& entity, const meshgrow::Vec3& p) {
+    const double size = field->model_field.field().size(entity, p);
+    return std::isfinite(size) ? factor * std::clamp(size, smallest, largest) : size;
+  };
 }
 
 void set_option(meshgrow::ModelField& model_field, const std::string& name, double value) {
@@ -542,32 +575,25 @@ char* meshgrow_field_summary_json(meshgrow_field* field) {
 
 char* meshgrow_report_json(int dim, const int* entities, size_t entities_n, meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
-    if (dim != 2 && dim != 3) {
-      throw Error("A report is about dimension 2 or 3, not " + std::to_string(dim) + ".");
+    const meshgrow::ReportMesh mesh = report_mesh(dim, entities, entities_n);
+    return copy_text(to_json(meshgrow::make_report(mesh, size_asked_of(field))).dump());
+  });
+}
+
+char* meshgrow_report_worst_json(int dim, const int* entities, size_t entities_n,
+                                 meshgrow_field* field, const char* name, int largest,
+                                 size_t count) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    const meshgrow::ReportMesh mesh = report_mesh(dim, entities, entities_n);
+    json places = json::array();
+    for (const meshgrow::WorstPlace& place :
+         meshgrow::worst_places(mesh, size_asked_of(field), name, largest != 0, count)) {
+      places.push_back({{"value", number_or_null(place.value)},
+                        {"elements", place.elements},
+                        {"entity", {place.entity.dim, place.entity.tag}},
+                        {"point", {place.point.x(), place.point.y(), place.point.z()}}});
     }
-    meshgrow::gmsh::require_gmsh();
-    const std::vector<Entity> asked = entities_of(entities, entities_n);
-    const meshgrow::Topology topology = meshgrow::read_topology();
-    for (const Entity& entity : asked) {
-      if (entity.dim != dim || !topology.contains(entity)) {
-        throw Error(meshgrow::entity_name(entity) + " is not a " + meshgrow::dimension_name(dim) +
-                    " of the model: check its dimension and tag.");
-      }
-    }
-    const meshgrow::ReportMesh mesh = meshgrow::read_report_mesh(dim, asked);
-    meshgrow::SizeAsked size_asked;
-    if (field != nullptr) {
-      deref(field).refresh_if_needed();
-      // As Gmsh changes every size that it is told.
-      const double smallest = meshgrow::gmsh::option("Mesh.MeshSizeMin");
-      const double largest = std::max(smallest, meshgrow::gmsh::option("Mesh.MeshSizeMax"));
-      const double factor = meshgrow::gmsh::option("Mesh.MeshSizeFactor");
-      size_asked = [=](const Entity& entity, const meshgrow::Vec3& p) {
-        const double size = field->model_field.field().size(entity, p);
-        return std::isfinite(size) ? factor * std::clamp(size, smallest, largest) : size;
-      };
-    }
-    return copy_text(to_json(meshgrow::make_report(mesh, size_asked)).dump());
+    return copy_text(places.dump());
   });
 }
 

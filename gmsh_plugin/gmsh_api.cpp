@@ -67,6 +67,28 @@ std::string take_string(char* text) {
   return result;
 }
 
+/// Texts that Gmsh allocates, and the array of them.
+class GmshStrings {
+ public:
+  GmshStrings() = default;
+  GmshStrings(const GmshStrings&) = delete;
+  GmshStrings& operator=(const GmshStrings&) = delete;
+  ~GmshStrings() {
+    for (std::size_t i = 0; i < size_; ++i) {
+      library().free(data_[i]);
+    }
+    library().free(data_);
+  }
+
+  char*** data() { return &data_; }
+  std::size_t* size() { return &size_; }
+  std::vector<std::string> copy() const { return std::vector<std::string>(data_, data_ + size_); }
+
+ private:
+  char** data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
 std::vector<Entity> to_entities(const std::vector<int>& dim_tags) {
   std::vector<Entity> result;
   for (std::size_t i = 0; i + 1 < dim_tags.size(); i += 2) {
@@ -108,24 +130,23 @@ Nodes get_nodes(int dim, int tag, bool with_boundary, bool parametric) {
 Version require_gmsh() {
   // Resolved first, so that a missing library is told as such.
   GmshLibrary& gmsh = library();
-  char* text = nullptr;
+  std::string told;
   try {
-    gmsh.call("gmshOptionGetString", static_cast<const char*>("General.Version"), &text);
+    told = version_text();
   } catch (const Error&) {
-    text = nullptr;
+    told.clear();
   }
-  const std::string version_text = take_string(text);
-  if (version_text.empty()) {  // depending on how it was built, Gmsh fails or says nothing
+  if (told.empty()) {  // depending on how it was built, Gmsh fails or says nothing
     throw Error("Gmsh is not initialized: call gmsh.initialize() first.");
   }
   Version version;
-  if (std::sscanf(version_text.c_str(), "%d.%d", &version.major, &version.minor) != 2) {
+  if (std::sscanf(told.c_str(), "%d.%d", &version.major, &version.minor) != 2) {
     throw Error("The libgmsh in use (" + gmsh.path() +
                 ") tells no version: install Gmsh 4.8 or "
                 "later.");
   }
   if (std::make_pair(version.major, version.minor) < std::make_pair(4, 8)) {
-    throw Error("The libgmsh in use (" + gmsh.path() + ") is version " + version_text +
+    throw Error("The libgmsh in use (" + gmsh.path() + ") is version " + told +
                 ": install Gmsh 4.8 or later.");
   }
   return version;
@@ -153,7 +174,16 @@ void initialize(const std::vector<std::string>& arguments) {
 }
 
 void finalize() { library().call("gmshFinalize"); }
+
+std::string version_text() {
+  char* text = nullptr;
+  library().call("gmshOptionGetString", static_cast<const char*>("General.Version"), &text);
+  return take_string(text);
+}
+
+std::string library_path() { return library().path(); }
 void open(const std::string& file) { library().call("gmshOpen", file.c_str()); }
+void merge(const std::string& file) { library().call("gmshMerge", file.c_str()); }
 void write(const std::string& file) { library().call("gmshWrite", file.c_str()); }
 
 double option(const std::string& name) {
@@ -179,6 +209,21 @@ void set_option(const std::string& name, double value) {
   library().call("gmshOptionSetNumber", name.c_str(), value);
 }
 
+std::vector<std::string> onelab_names(const std::string& expression) {
+  GmshStrings names;
+  library().call("gmshOnelabGetNames", names.data(), names.size(), expression.c_str());
+  return names.copy();
+}
+
+std::string onelab_string(const std::string& name) {
+  GmshStrings values;
+  library().call("gmshOnelabGetString", name.c_str(), values.data(), values.size());
+  const std::vector<std::string> all = values.copy();
+  return all.empty() ? "" : all.front();
+}
+
+void remove_onelab(const std::string& name) { library().call("gmshOnelabClear", name.c_str()); }
+
 std::string current_model() {
   char* name = nullptr;
   library().call("gmshModelGetCurrent", &name);
@@ -190,15 +235,9 @@ void set_current_model(const std::string& name) {
 }
 
 std::vector<std::string> models() {
-  char** names = nullptr;
-  std::size_t count = 0;
-  library().call("gmshModelList", &names, &count);
-  std::vector<std::string> result;
-  for (std::size_t i = 0; i < count; ++i) {
-    result.push_back(take_string(names[i]));
-  }
-  library().free(names);
-  return result;
+  GmshStrings names;
+  library().call("gmshModelList", names.data(), names.size());
+  return names.copy();
 }
 
 void log(const std::string& message, const std::string& level) {
@@ -408,7 +447,7 @@ void set_periodic_nodes(const std::vector<std::pair<Entity, PeriodicNodes>>& per
     }
     file << "$EndPeriodic\n";
   }
-  library().call("gmshMerge", path.c_str());
+  merge(path);
 }
 
 void generate(int dim) {
@@ -444,6 +483,18 @@ std::string last_error() {
   char* message = nullptr;
   library().call("gmshLoggerGetLastError", &message);
   return take_string(message);
+}
+
+void partition(int count) {
+  // Newer versions take prescribed partitions of elements as well.
+  if (is_4_8()) {
+    library().call("gmshModelMeshPartition", count);
+  } else {
+    const std::size_t* no_elements = nullptr;
+    const int* no_partitions = nullptr;
+    library().call("gmshModelMeshPartition", count, no_elements, std::size_t{0}, no_partitions,
+                   std::size_t{0});
+  }
 }
 
 std::vector<std::array<double, 2>> parameter_bounds(const Entity& entity) {

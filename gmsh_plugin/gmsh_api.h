@@ -23,19 +23,31 @@ struct Version {
 /// Throws Error unless Gmsh is initialized and at least 4.8.
 Version require_gmsh();
 
-/// Starts Gmsh with a command line of its own; reads its configuration files as the program does.
 /// Whether this is the old generation: one size callback for all models, no proposal passed to it.
 bool is_4_8();
 
+/// Starts Gmsh with a command line of its own; reads its configuration files as the program does.
 void initialize(const std::vector<std::string>& arguments);
 void finalize();
+/// Such as "4.15.2". Gmsh must be initialized.
+std::string version_text();
+/// The file of the libgmsh in use.
+std::string library_path();
 void open(const std::string& file);
+/// Adds what is in the file to the current model.
+void merge(const std::string& file);
 void write(const std::string& file);
 
 double option(const std::string& name);
 /// The same, or `otherwise` if this version of Gmsh has no such option.
 double option_or(const std::string& name, double otherwise);
 void set_option(const std::string& name, double value);
+
+/// Names of the parameters in Gmsh's ONELAB database that match the regular expression, by name.
+std::vector<std::string> onelab_names(const std::string& expression);
+/// The value of a string parameter; empty if there is none of this name.
+std::string onelab_string(const std::string& name);
+void remove_onelab(const std::string& name);
 
 std::string current_model();
 void set_current_model(const std::string& name);
@@ -127,6 +139,8 @@ void generate(int dim);
 /// Makes all elements of this order.
 void set_order(int order);
 std::string last_error();
+/// Cuts the mesh into so many partitions.
+void partition(int count);
 
 /// Parameter ranges of a curve (one) or surface (two): {min, max} each.
 std::vector<std::array<double, 2>> parameter_bounds(const Entity& entity);

@@ -68,7 +68,8 @@ GmshLibrary::GmshLibrary() {
   for (const std::string& name : usual_names()) {
     handle_ = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (handle_ != nullptr) {
-      path_ = name;
+      const std::string found = loaded_library_path();
+      path_ = found.empty() ? name : found;
       return;
     }
   }

@@ -222,6 +222,15 @@ MESHGROW_API char* meshgrow_report_json(int dim, const int* entities, size_t ent
  * a number if it could not be measured. */
 MESHGROW_API int meshgrow_report_value(const char* report_json, const char* name, double* value);
 
+/* At most `count` places that decide the number `name` of that report ("ratio_99", "gamma_min", …),
+ * those with the largest values first if `largest` != 0, else those with the smallest, as JSON:
+ * [{"value": …, "elements": [tags of Gmsh], "entity": [dim, tag], "point": [x, y, z]}, …]. For
+ * "length_share_good", edges that fit worst come first unless `largest` != 0; none for "elements".
+ * NULL on failure. To be freed by meshgrow_free. */
+MESHGROW_API char* meshgrow_report_worst_json(int dim, const int* entities, size_t entities_n,
+                                              meshgrow_field* field, const char* name, int largest,
+                                              size_t count);
+
 /* The table of several such reports: JSON array of {"name": …, "report": …}. */
 MESHGROW_API char* meshgrow_report_table(const char* reports_json);
 

@@ -181,6 +181,7 @@ ReportMesh read_report_mesh(int dim, std::vector<Entity> entities) {
         ReportElement element;
         element.shape = shape;
         element.entity = entity;
+        element.tag = block.tags[first / step];
         for (int i = 0; i < corner_count(shape); ++i) {
           element.corners[i] =
               static_cast<std::uint32_t>(nodes.index(block.node_tags[first + i], entity));

@@ -22,6 +22,7 @@ struct ReportElement {
   ElementShape shape = ElementShape::tetrahedron;
   Entity entity;
   std::array<std::uint32_t, 8> corners{};
+  std::size_t tag = 0;  ///< Gmsh's
 };
 
 /// The elements to report on, all of one dimension.

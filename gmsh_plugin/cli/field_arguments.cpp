@@ -5,7 +5,20 @@
 #include <cstring>
 #include <fstream>
 
+#include "onelab_functions.h"
+#include "usage_error.h"
+
 namespace meshgrow::cli {
+
+namespace {
+
+void check_usage(int failed, const std::string& where = "") {
+  if (failed != 0) {
+    throw UsageError(where + meshgrow_last_error());
+  }
+}
+
+}  // namespace
 
 void add_field_options(CLI::App& command, FieldArguments& arguments) {
   command
@@ -40,8 +53,8 @@ std::vector<std::string> size_function_texts(const FieldArguments& arguments) {
   if (!arguments.file.empty()) {
     std::ifstream file(arguments.file);
     if (!file) {
-      throw Error("Cannot read " + arguments.file + " (" + std::strerror(errno) +
-                  "): give a file of size functions, one a line.");
+      throw UsageError("Cannot read " + arguments.file + " (" + std::strerror(errno) +
+                       "): give a file of size functions, one a line.");
     }
     for (std::string line; std::getline(file, line);) {
       const std::size_t first = line.find_first_not_of(" \t\r");
@@ -53,23 +66,31 @@ std::vector<std::string> size_function_texts(const FieldArguments& arguments) {
   return result;
 }
 
+bool has_size_functions(const FieldArguments& arguments, const std::vector<std::string>& texts) {
+  return !texts.empty() || arguments.defaults_limit != 0.0 || !onelab_functions().empty();
+}
+
 FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::string>& texts) {
   FieldPointer field(meshgrow_field_create());
   check(field ? 0 : 1);
-  check(meshgrow_field_set_option(field.get(), "tolerance", arguments.tolerance));
+  check_usage(meshgrow_field_set_option(field.get(), "tolerance", arguments.tolerance));
   const double evaluator = arguments.evaluator == "exact"  ? 2.0
                            : arguments.evaluator == "grid" ? 1.0
                                                            : 0.0;
-  check(meshgrow_field_set_option(field.get(), "evaluator", evaluator));
-  check(meshgrow_field_set_option(field.get(), "strict", arguments.strict ? 1.0 : 0.0));
-  check(meshgrow_field_set_option(field.get(), "calibrate", arguments.calibrate ? 1.0 : 0.0));
+  check_usage(meshgrow_field_set_option(field.get(), "evaluator", evaluator));
+  check_usage(meshgrow_field_set_option(field.get(), "strict", arguments.strict ? 1.0 : 0.0));
+  check_usage(meshgrow_field_set_option(field.get(), "calibrate", arguments.calibrate ? 1.0 : 0.0));
+  for (const OnelabFunction& function : onelab_functions()) {
+    check_usage(meshgrow_field_add(field.get(), function.text.c_str()),
+                "Size functions/" + function.name + ": ");
+  }
   for (const std::string& text : texts) {
-    check(meshgrow_field_add(field.get(), text.c_str()));
+    check_usage(meshgrow_field_add(field.get(), text.c_str()));
   }
   if (arguments.defaults_limit != 0.0) {
     constexpr double growth_rate = 1.2;
-    check(meshgrow_field_create_defaults(field.get(), nullptr, 0, growth_rate,
-                                         arguments.defaults_limit, 0.0));
+    check_usage(meshgrow_field_create_defaults(field.get(), nullptr, 0, growth_rate,
+                                               arguments.defaults_limit, 0.0));
   }
   return field;
 }

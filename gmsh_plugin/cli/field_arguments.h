@@ -23,11 +23,15 @@ struct FieldArguments {
 /// Gives the command options that fill `arguments`, which must outlive the parsing.
 void add_field_options(CLI::App& command, FieldArguments& arguments);
 
-/// The size functions by their one-line texts, those of the file last. Throws Error if the file
-/// cannot be read.
+/// The size functions of the arguments by their one-line texts, those of the file last. Throws
+/// UsageError if the file cannot be read.
 std::vector<std::string> size_function_texts(const FieldArguments& arguments);
 
-/// The size field of the current model with these functions. Throws Error.
+/// Whether there is any size function, be it in the current model, among the texts or by default.
+bool has_size_functions(const FieldArguments& arguments, const std::vector<std::string>& texts);
+
+/// The size field of the current model with the functions that the model itself defines
+/// (onelab_functions.h) and these. Throws UsageError if one of them is unusable.
 FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::string>& texts);
 
 }  // namespace meshgrow::cli

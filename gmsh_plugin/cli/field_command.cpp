@@ -13,8 +13,11 @@
 #include "field_file.h"
 #include "field_view.h"
 #include "gmsh_session.h"
+#include "interruption.h"
 #include "model_file.h"
 #include "number_text.h"
+#include "progress.h"
+#include "usage_error.h"
 
 namespace meshgrow::cli {
 
@@ -41,8 +44,8 @@ Entity parse_entity(const std::string& text) {
     return everywhere;
   }
   const auto fail = [&text] {
-    throw Error("There is no entity '" + text +
-                "': give its dimension and tag, such as --entity 3,2 for Volume 2.");
+    throw UsageError("There is no entity '" + text +
+                     "': give its dimension and tag, such as --entity 3,2 for Volume 2.");
   };
   Entity entity;
   std::size_t dim_end = 0;
@@ -88,17 +91,16 @@ void print_next_steps(const std::string& output) {
 
 /// The field of a model, with all its sources. Needs Gmsh.
 FieldPointer field_of_model(const FieldCommandArguments& arguments,
-                            const std::vector<std::string>& texts) {
+                            const std::vector<std::string>& texts, Progress& progress) {
   std::cout << "Reading " << arguments.model << std::endl;
   open_model(arguments.model);
+  if (!has_size_functions(arguments.field, texts)) {
+    throw UsageError(
+        "There is no size function, hence no size field: give --size-function, --size-functions or "
+        "--defaults.");
+  }
   FieldPointer field = make_field(arguments.field, texts);
-  check(meshgrow_field_set_progress(
-      field.get(),
-      [](const char* line, void*) {
-        std::cout << line << std::endl;
-        return 0;
-      },
-      nullptr));
+  show_progress(field.get(), progress);
   const int dim = arguments.dim_2 ? 2 : arguments.dim_1 ? 1 : 0;
   if (dim > 0) {
     check(meshgrow_field_generate(field.get(), dim, 0));
@@ -114,54 +116,61 @@ FieldPointer field_of_model(const FieldCommandArguments& arguments,
   return field;
 }
 
-/// Writes in the format of the ending, and tells what was written.
-void write(meshgrow_field* field, const std::string& output, const Entity& entity) {
+/// Writes in the format of the ending; returns how many cells.
+std::size_t write(meshgrow_field* field, const std::string& output, const Entity& entity) {
   std::size_t cells = 0;
   if (is_saved_field(output)) {
     check(meshgrow_field_save(field, output.c_str()));
   } else {
     check(meshgrow_field_write_view(field, output.c_str(), entity.dim, entity.tag, &cells));
   }
+  return cells;
+}
+
+void tell_written(meshgrow_field* field, const std::string& output, std::size_t cells) {
   std::cout << '\n' << take_text(meshgrow_field_summary(field)) << "\nWrote " << output << ": ";
   if (cells > 0) {
     std::cout << grouped_digits(cells) << " cells, ";
   }
   std::cout << rounded(static_cast<double>(fs::file_size(output)) / 1e6, 1) << " MB.\n";
+  print_next_steps(output);
 }
 
 void write_field(const FieldCommandArguments& arguments) {
   const Entity entity = parse_entity(arguments.entity);
   const std::vector<std::string> texts = size_function_texts(arguments.field);
-  const bool has_functions = !texts.empty() || arguments.field.defaults_limit != 0.0;
   const bool from_file = is_field_file(arguments.model);
-  if (from_file && has_functions) {
-    throw Error(arguments.model +
-                " is a size field with functions of its own: give it without size functions.");
-  }
-  if (!from_file && !has_functions) {
-    throw Error(
-        "There is no size function, hence no size field: give --size-function, --size-functions or "
-        "--defaults.");
+  if (from_file && (!texts.empty() || arguments.field.defaults_limit != 0.0)) {
+    throw UsageError(arguments.model +
+                     " is a size field with functions of its own: give it without size functions.");
   }
   if (!is_saved_field(arguments.output)) {
     check_view_ending(arguments.output);
   } else if (entity.dim >= 0) {
-    throw Error("A saved field (.mgf) is that of all entities: leave out --entity.");
+    throw UsageError("A saved field (.mgf) is that of all entities: leave out --entity.");
   }
   if (fs::exists(arguments.output) && fs::exists(arguments.model) &&
       fs::equivalent(arguments.output, arguments.model)) {
-    throw Error("The size field would be written over the model " + arguments.model +
-                ": name another output with -o.");
+    throw UsageError("The size field would be written over the model " + arguments.model +
+                     ": name another output with -o.");
   }
   if (from_file) {
     const FieldPointer field(meshgrow_field_load(arguments.model.c_str()));
     check(field ? 0 : 1);
-    write(field.get(), arguments.output, entity);
-  } else {
-    const GmshSession session(arguments.verbosity);
-    write(field_of_model(arguments, texts).get(), arguments.output, entity);
+    tell_written(field.get(), arguments.output, write(field.get(), arguments.output, entity));
+    return;
   }
-  print_next_steps(arguments.output);
+  end_when_interrupted();
+  const GmshSession session({"-v", std::to_string(arguments.verbosity)});
+  FieldPointer field;
+  std::size_t cells = 0;
+  {
+    Progress progress;
+    field = field_of_model(arguments, texts, progress);
+    cells = write(field.get(), arguments.output, entity);
+    meshgrow_field_set_progress(field.get(), nullptr, nullptr);
+  }
+  tell_written(field.get(), arguments.output, cells);
 }
 
 }  // namespace
@@ -188,6 +197,11 @@ void add_field_command(CLI::App& program) {
   command.add_option("-v", arguments->verbosity, "Gmsh's verbosity, 0 to 99")
       ->capture_default_str();
   add_field_options(command, arguments->field);
+  command.footer(
+      std::string("Example:\n"
+                  "  meshgrow field model.geo -2 -o sizes.pos --size-function 'mesh source "
+                  "Surface{7} attach Volume{2} growth 1.2 limit 2'\n") +
+      exit_codes_help);
   command.callback([arguments] { write_field(*arguments); });
 }
 

@@ -1,21 +1,38 @@
 #include "gmsh_session.h"
 
 #include "gmsh_api.h"
+#include "usage_error.h"
 
 namespace meshgrow::cli {
 
-GmshSession::GmshSession(int verbosity) {
-  gmsh::initialize({"meshgrow"});
-  gmsh::set_option("General.Terminal", 1.0);
-  gmsh::set_option("General.Verbosity", verbosity);
-}
+namespace {
 
-GmshSession::~GmshSession() {
+void finalize_quietly() {
   try {
     gmsh::finalize();
   } catch (...) {
     // Nothing is left to lose at the end of the program.
   }
+}
+
+}  // namespace
+
+GmshSession::GmshSession(const std::vector<std::string>& options) {
+  std::vector<std::string> arguments = {"meshgrow", "-v", "2"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  gmsh::initialize(arguments);
+  const std::string problem = gmsh::last_error();
+  if (!problem.empty()) {
+    finalize_quietly();
+    throw UsageError("Gmsh refuses its options (" + problem + "): correct them.");
+  }
+}
+
+GmshSession::~GmshSession() { finalize_quietly(); }
+
+std::string found_gmsh() {
+  const GmshSession session({"-v", "0"});
+  return gmsh::version_text() + " (" + gmsh::library_path() + ")";
 }
 
 }  // namespace meshgrow::cli

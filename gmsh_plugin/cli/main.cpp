@@ -1,12 +1,36 @@
 // The program `meshgrow`: meshes models with size functions and reports on meshes.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "field_command.h"
+#include "gmsh_session.h"
 #include "mesh_command.h"
 #include "meshgrow.h"
 #include "report_command.h"
+#include "usage_error.h"
+
+namespace {
+
+std::string version() {
+  const std::string own = std::string("meshgrow ") + meshgrow_version();
+  try {
+    return own + " with Gmsh " + meshgrow::cli::found_gmsh();
+  } catch (const std::exception& error) {
+    return own + " without Gmsh (" + error.what() + ")";
+  }
+}
+
+int fail(const std::exception& error, meshgrow::cli::ExitCode code) {
+  std::cout.flush();
+  std::cerr << "meshgrow: " << error.what() << '\n';
+  return code;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -17,19 +41,24 @@ int main(int argc, char** argv) {
       "  curvature source Volume{1} attach Volume{1} angle 18 growth 1.2 limit 2\n"
       "  proximity source Volume{1} attach Volume{1} cells 3 growth 1.2 limit 2",
       "meshgrow");
-  app.set_version_flag("--version", std::string("meshgrow ") + meshgrow_version());
+  app.set_version_flag("--version", version);
   app.require_subcommand(1);
-  meshgrow::cli::add_mesh_command(app);
-  meshgrow::cli::add_report_command(app);
-  meshgrow::cli::add_field_command(app);
+  app.footer(meshgrow::cli::exit_codes_help);
+  std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
-    app.parse(argc, argv);
+    meshgrow::cli::add_mesh_command(app, arguments);
+    meshgrow::cli::add_report_command(app);
+    meshgrow::cli::add_field_command(app);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+    app.parse(std::move(arguments));
+  } catch (const CLI::RuntimeError& error) {
+    return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error);
+    return app.exit(error) == 0 ? meshgrow::cli::done : meshgrow::cli::wrong_use;
+  } catch (const meshgrow::cli::UsageError& error) {
+    return fail(error, meshgrow::cli::wrong_use);
   } catch (const std::exception& error) {
-    std::cout.flush();
-    std::cerr << "meshgrow: " << error.what() << '\n';
-    return 1;
+    return fail(error, meshgrow::cli::work_failed);
   }
-  return 0;
+  return meshgrow::cli::done;
 }

@@ -5,32 +5,53 @@
 #include <filesystem>
 #include <fstream>
 
-#include "error.h"
 #include "gmsh_api.h"
+#include "onelab_functions.h"
+#include "usage_error.h"
 
 namespace meshgrow::cli {
 
-void open_model(const std::string& file) {
+namespace {
+
+void check_readable(const std::string& file) {
   if (!std::ifstream(file)) {
-    throw Error("Cannot read " + file + " (" + std::strerror(errno) +
-                "): give a file that Gmsh can open.");
+    throw UsageError("Cannot read " + file + " (" + std::strerror(errno) +
+                     "): give a file that Gmsh can open.");
   }
   if (std::filesystem::is_directory(file)) {
-    throw Error(file + " is a directory: give a file that Gmsh can open.");
-  }
-  std::string problem;
-  try {
-    gmsh::open(file);
-    problem = gmsh::last_error();
-  } catch (const Error& error) {
-    problem = error.what();
-  }
-  if (!problem.empty()) {
-    throw Error("Gmsh cannot read " + file + " (" + problem + "): correct the file.");
-  }
-  if (gmsh::entities().empty()) {
-    throw Error(file + " holds no geometry and no mesh: give a model that Gmsh can read.");
+    throw UsageError(file + " is a directory: give a file that Gmsh can open.");
   }
 }
+
+}  // namespace
+
+void open_model(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    check_readable(file);
+  }
+  forget_onelab_functions();
+  for (const std::string& file : files) {
+    std::string problem;
+    try {
+      if (&file == &files.front()) {
+        gmsh::open(file);
+      } else {
+        gmsh::merge(file);
+      }
+      problem = gmsh::last_error();
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+    if (!problem.empty()) {
+      throw UsageError("Gmsh cannot read " + file + " (" + problem + "): correct the file.");
+    }
+  }
+  if (gmsh::entities().empty()) {
+    throw UsageError(files.front() +
+                     " holds no geometry and no mesh: give a model that Gmsh can read.");
+  }
+}
+
+void open_model(const std::string& file) { open_model(std::vector<std::string>{file}); }
 
 }  // namespace meshgrow::cli

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "c_results.h"
-#include "error.h"
+#include "fail_conditions.h"
 #include "field_arguments.h"
 #include "gmsh_session.h"
 #include "model_file.h"
 #include "model_reader.h"
 #include "size_function_text.h"
+#include "usage_error.h"
 
 namespace meshgrow::cli {
 
@@ -24,38 +25,64 @@ struct ReportArguments {
   int dim = 3;
   std::string entities;
   bool json = false;
+  std::vector<std::string> fail_if;
   FieldArguments field;
 };
 
+std::vector<int> dim_tags(const std::string& entities) {
+  std::vector<int> result;
+  try {
+    for (const Entity& entity : parse_entities(entities, read_topology())) {
+      result.push_back(entity.dim);
+      result.push_back(entity.tag);
+    }
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+  return result;
+}
+
+/// The report of one file, as a row of the table; `acceptable` becomes false if a condition holds.
+nlohmann::json report_row(const std::string& file, const ReportArguments& arguments,
+                          const std::vector<std::string>& texts,
+                          const std::vector<FailCondition>& conditions, bool& acceptable) {
+  open_model(file);
+  const FieldPointer field = has_size_functions(arguments.field, texts)
+                                 ? make_field(arguments.field, texts)
+                                 : FieldPointer();
+  ReportedPart part{arguments.dim, {}, field.get()};
+  if (!arguments.entities.empty()) {
+    part.dim_tags = dim_tags(arguments.entities);
+  }
+  nlohmann::json row = {
+      {"name", file},
+      {"report", nlohmann::json::parse(take_text(meshgrow_report_json(
+                     part.dim, part.dim_tags.data(), part.dim_tags.size(), part.field)))}};
+  if (row.at("report").at("elements") == 0) {
+    throw UsageError(file + " has no elements of dimension " + std::to_string(arguments.dim) +
+                     (arguments.entities.empty() ? "" : " on " + arguments.entities) +
+                     ": mesh it first, or choose --dim.");
+  }
+  acceptable = check_report(conditions, part, row) && acceptable;
+  return row;
+}
+
 void report(const ReportArguments& arguments) {
   const std::vector<std::string> texts = size_function_texts(arguments.field);
-  const GmshSession session(2);
+  const std::vector<FailCondition> conditions = parse_fail_conditions(arguments.fail_if);
+  const GmshSession session;
   nlohmann::json rows = nlohmann::json::array();
+  bool acceptable = true;
   for (const std::string& file : arguments.meshes) {
-    open_model(file);
-    const bool has_functions = !texts.empty() || arguments.field.defaults_limit != 0.0;
-    const FieldPointer field = has_functions ? make_field(arguments.field, texts) : FieldPointer();
-    std::vector<int> dim_tags;
-    if (!arguments.entities.empty()) {
-      for (const Entity& entity : parse_entities(arguments.entities, read_topology())) {
-        dim_tags.push_back(entity.dim);
-        dim_tags.push_back(entity.tag);
-      }
-    }
-    const std::string measured = take_text(
-        meshgrow_report_json(arguments.dim, dim_tags.data(), dim_tags.size(), field.get()));
-    nlohmann::json values = nlohmann::json::parse(measured);
-    if (values.at("elements") == 0) {
-      throw Error(file + " has no elements of dimension " + std::to_string(arguments.dim) +
-                  (arguments.entities.empty() ? "" : " on " + arguments.entities) +
-                  ": mesh it first, or choose --dim.");
-    }
-    rows.push_back({{"name", file}, {"report", std::move(values)}});
+    rows.push_back(report_row(file, arguments, texts, conditions, acceptable));
   }
   if (arguments.json) {
     std::cout << rows.dump(2) << '\n';
   } else {
     std::cout << take_text(meshgrow_report_table(rows.dump().c_str()));
+  }
+  if (!acceptable) {
+    throw CLI::RuntimeError(ExitCode::work_failed);
   }
 }
 
@@ -71,7 +98,12 @@ void add_report_command(CLI::App& program) {
       ->check(CLI::Range(2, 3));
   command.add_option("--entities", arguments->entities, "Only these, for example 'Volume{2,3}'");
   command.add_flag("--json", arguments->json, "JSON instead of a table");
+  add_fail_option(command, arguments->fail_if);
   add_field_options(command, arguments->field);
+  command.footer(std::string("Example:\n"
+                             "  meshgrow report before.msh after.msh --entities 'Volume{2}' "
+                             "--fail-if 'gamma_min < 0.1'\n") +
+                 exit_codes_help);
   command.callback([arguments] { report(*arguments); });
 }
 
