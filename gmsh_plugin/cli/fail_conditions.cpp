@@ -96,12 +96,11 @@ FailCondition parse_fail_condition(const std::string& text) {
   }
   FailCondition result;
   result.text = text;
-  const std::string name =
-      text.substr(begin, text.find_last_not_of(" \t", operation - 1) + 1 - begin);
-  result.key = name == "ratio_p99" ? "ratio_99" : name;
+  result.name = text.substr(begin, text.find_last_not_of(" \t", operation - 1) + 1 - begin);
+  result.key = result.name == "ratio_p99" ? "ratio_99" : result.name;
   if (std::count(keys().begin(), keys().end(), result.key) == 0) {
-    throw UsageError("A report has no number '" + name + "' as in '" + text + "': give one of " +
-                     report_number_names() + ".");
+    throw UsageError("A report has no number '" + result.name + "' as in '" + text +
+                     "': give one of " + report_number_names() + ".");
   }
   std::size_t rest = operation + 1;
   result.comparison = text.substr(operation, 1);
@@ -131,7 +130,7 @@ bool check_report(const std::vector<FailCondition>& conditions, const ReportedPa
   for (const FailCondition& condition : conditions) {
     const nlohmann::json& value = report.at(condition.key);
     const std::string start =
-        "meshgrow: " + row.at("name").get<std::string>() + ": " + condition.key + " is ";
+        "meshgrow: " + row.at("name").get<std::string>() + ": " + condition.name + " is ";
     if (!value.is_number()) {
       const std::string reason = why_unknown(condition.key, report, part.field != nullptr);
       std::cerr << start << "unknown, since " << reason << ", so that '" << condition.text

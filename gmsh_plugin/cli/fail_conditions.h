@@ -13,6 +13,7 @@ namespace meshgrow::cli {
 /// What makes a mesh unacceptable, such as "ratio_p99 > 1.4".
 struct FailCondition {
   std::string text;  ///< as given
+  std::string name;  ///< of the number, as given
   std::string key;   ///< of the report in JSON
   std::string comparison;
   double bound = 0.0;

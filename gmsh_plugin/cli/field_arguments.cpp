@@ -2,9 +2,11 @@
 
 #include <CLI/Validators.hpp>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
+#include "background_grid.h"
 #include "onelab_functions.h"
 #include "usage_error.h"
 
@@ -15,6 +17,16 @@ namespace {
 void check_usage(int failed, const std::string& where = "") {
   if (failed != 0) {
     throw UsageError(where + meshgrow_last_error());
+  }
+}
+
+/// What is wrong with it, if anything: for runs, too, that build no field.
+std::string wrong_tolerance(const std::string& text) {
+  try {
+    check_tolerance(std::strtod(text.c_str(), nullptr));
+    return "";
+  } catch (const Error& error) {
+    return error.what();
   }
 }
 
@@ -35,6 +47,7 @@ void add_field_options(CLI::App& command, FieldArguments& arguments) {
       ->check(CLI::PositiveNumber);
   command
       .add_option("--tolerance", arguments.tolerance, "Relative tolerance of the background grid")
+      ->check(wrong_tolerance)
       ->capture_default_str();
   command
       .add_option("--evaluator", arguments.evaluator,
