@@ -424,6 +424,17 @@ int meshgrow_field_set_progress(meshgrow_field* field,
   });
 }
 
+int meshgrow_field_set_stop(meshgrow_field* field, int (*wants_stop)(void* data), void* data) {
+  return guarded(1, [&] {
+    std::function<bool()> call;
+    if (wants_stop != nullptr) {
+      call = [wants_stop, data] { return wants_stop(data) != 0; };
+    }
+    deref(field).set_stop_request(std::move(call));
+    return 0;
+  });
+}
+
 int meshgrow_field_refresh(meshgrow_field* field) {
   return guarded(1, [&] {
     deref(field).refresh();

@@ -127,6 +127,12 @@ MESHGROW_API int meshgrow_field_set_progress(meshgrow_field* field,
                                              int (*listener)(const char* line, void* data),
                                              void* data);
 
+/* Asks `wants_stop` from the thread that works whether to stop: before each line of progress and,
+ * whether lines are told or not, each time that a part of a grid is built. A result other than 0
+ * stops the work with an error; NULL ends that. Within a pass of Gmsh nobody is asked. */
+MESHGROW_API int meshgrow_field_set_stop(meshgrow_field* field, int (*wants_stop)(void* data),
+                                         void* data);
+
 /* Reads the sources as they are meshed now and builds the grids. */
 MESHGROW_API int meshgrow_field_refresh(meshgrow_field* field);
 

@@ -88,7 +88,14 @@ void ModelField::apply_change(std::optional<std::size_t> function) {
   }
 }
 
+void ModelField::stop_if_asked() const {
+  if (wants_stop_ && wants_stop_()) {
+    throw Error("Stopped as asked; what was meshed before is kept.");
+  }
+}
+
 void ModelField::tell(const std::string& line) const {
+  stop_if_asked();
   if (listener_) {
     listener_(line);
   } else {
@@ -97,6 +104,7 @@ void ModelField::tell(const std::string& line) const {
 }
 
 void ModelField::tell_grid(const std::string& what, double done) {
+  stop_if_asked();
   const auto now = std::chrono::steady_clock::now();
   if (what != grid_told_of_) {
     grid_told_of_ = what;

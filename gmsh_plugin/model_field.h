@@ -68,6 +68,10 @@ class ModelField {
   void set_progress_listener(ProgressListener listener) { listener_ = std::move(listener); }
   void tell(const std::string& line) const;
 
+  /// Who is asked before each line, and often while a grid is built, whether the work shall stop;
+  /// it then does, with an Error.
+  void set_stop_request(std::function<bool()> wants_stop) { wants_stop_ = std::move(wants_stop); }
+
   /// A user's own sizes: the smaller one wins, everywhere in the model. None if empty. What they
   /// throw counts as no size.
   void combine(UserSizes sizes) { answers_.combine(std::move(sizes)); }
@@ -171,6 +175,7 @@ class ModelField {
   void report_unmeshed(std::size_t function);
 
   void tell_grid(const std::string& what, double done);
+  void stop_if_asked() const;
 
   std::string model_;
   SizeField field_;
@@ -197,6 +202,7 @@ class ModelField {
   bool generating_ = false;
   std::set<std::size_t> reported_;
   ProgressListener listener_;
+  std::function<bool()> wants_stop_;
   std::string grid_told_of_;
   std::chrono::steady_clock::time_point grid_told_at_;
   std::unique_ptr<SizeCallback> callback_;

@@ -1,9 +1,13 @@
 """What goes on around a run: listeners that stop it, other models, meshes that Gmsh will not keep."""
 
+import os
+import signal
+
 import gmsh
 import meshgrow
 import numpy as np
 import pytest
+from meshgrow import _library
 
 import models
 from meshes import closure, element_count, has_elements, premesh, snapshots
@@ -85,3 +89,50 @@ def test_entities_are_whole_numbers_of_gmsh(entity, kind):
     field = meshgrow.SizeField()
     with pytest.raises(kind):
         field.add_fixed([entity], [(3, 1)], 0.1, 1.2, 1.0)
+
+
+def test_a_grid_asks_often_whether_to_stop():
+    """Also where no line is told: lines about a grid come once a second."""
+    model = models.sphere_in_box()
+    premesh([model.sphere], 0.1)
+    lines, asked = [], []
+    field = field_of(model, evaluator="grid", progress=lines.append)
+
+    @_library.STOP_REQUEST
+    def stop(_):
+        asked.append(len(lines))
+        return int(len(asked) == 20)
+
+    _library.check(_library.lib.meshgrow_field_set_stop(field._handle, stop, None))
+    with pytest.raises(meshgrow.Error, match="Stopped as asked"):
+        field.refresh()
+    assert len(asked) == 20 and not any("done" in line for line in lines)
+    field.refresh()
+    assert any("done" in line for line in lines)
+
+
+def test_ctrl_c_stops_a_grid_without_a_listener():
+    """A signal that is due is served when the library asks whether to stop."""
+    model = models.sphere_in_box()
+    premesh([model.sphere], 0.1)
+    field = field_of(model, evaluator="grid")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    asked = field._raised.stop_request()
+    calls = []
+
+    @_library.STOP_REQUEST
+    def interrupt_then_ask(data):
+        calls.append(1)
+        if len(calls) == 10:
+            os.kill(os.getpid(), signal.SIGINT)
+        return asked(data)
+
+    _library.check(
+        _library.lib.meshgrow_field_set_stop(field._handle, interrupt_then_ask, None))
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            field.generate(3)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert 10 <= len(calls) <= 11
+    assert not has_elements(model.outer)

@@ -9,8 +9,8 @@ from typing import Any, Callable, Dict, Optional, Union
 
 import numpy.typing as npt
 
-from ._library import (PROGRESS_LISTENER, USER_SIZES, DimTag, DimTags, Doubles, check, dim_tags,
-                       doubles, lib, points_array, sizes_array, take_text)
+from ._library import (PROGRESS_LISTENER, STOP_REQUEST, USER_SIZES, DimTag, DimTags, Doubles, check,
+                       dim_tags, doubles, lib, points_array, sizes_array, take_text)
 from ._interrupts import interrupts_kept
 from ._plan import Plan
 from ._raised import Raised
@@ -59,8 +59,10 @@ class SizeField:
         self._set("strict", strict)
         self._set("threads", threads)
         self._set("calibrate", calibrate)
+        # Both callbacks are kept as long as the field, which calls them.
+        self._stop_request = STOP_REQUEST(self._raised.stop_request())
+        check(lib.meshgrow_field_set_stop(self._handle, self._stop_request, None))
         if progress is not None:
-            # Kept as long as the field, which calls it.
             self._listener = PROGRESS_LISTENER(self._raised.listener(progress))
             check(lib.meshgrow_field_set_progress(self._handle, self._listener, None))
 

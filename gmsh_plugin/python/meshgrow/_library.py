@@ -24,6 +24,7 @@ _FIELD = ctypes.c_void_p
 _TEXT = ctypes.c_void_p  # a char* that must be freed, so not c_char_p
 
 PROGRESS_LISTENER = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
+STOP_REQUEST = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
 USER_SIZES = ctypes.CFUNCTYPE(_DOUBLE, _INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE,
                               ctypes.c_void_p)
 
@@ -54,6 +55,7 @@ _SIGNATURES = {
     "meshgrow_field_load": (_FIELD, [ctypes.c_char_p]),
     "meshgrow_field_set_option": (_INT, [_FIELD, ctypes.c_char_p, _DOUBLE]),
     "meshgrow_field_set_progress": (_INT, [_FIELD, PROGRESS_LISTENER, ctypes.c_void_p]),
+    "meshgrow_field_set_stop": (_INT, [_FIELD, STOP_REQUEST, ctypes.c_void_p]),
     "meshgrow_field_refresh": (_INT, [_FIELD]),
     "meshgrow_field_register": (_INT, [_FIELD]),
     "meshgrow_field_unregister": (_INT, [_FIELD]),

@@ -19,7 +19,7 @@ class Raised:
         self.stops = False
 
     def keep(self, exception: BaseException) -> None:
-        """The first one counts; the next line of progress stops the work."""
+        """The first one counts; the work stops when the library next asks."""
         self.exception = self.exception or exception
         self.stops = True
 
@@ -41,6 +41,10 @@ class Raised:
                     self.keep(raised)
             return int(self.stops)
         return listen
+
+    def stop_request(self) -> Callable[[Any], int]:
+        """Tells the library to stop. A pending Ctrl-C is kept before it answers."""
+        return lambda _: int(self.stops)
 
     def sizes(self, sizes: UserSizes) -> Callable[..., float]:
         """A size callback for the library; where it raises there is no size."""
