@@ -7,22 +7,17 @@
 #include <optional>
 #include <string>
 
+#include "c_field.h"
 #include "error.h"
 #include "field_view.h"
 #include "gmsh_api.h"
+#include "gmsh_state.h"
 #include "mesh_report.h"
 #include "meshgrow.h"
-#include "model_field.h"
 #include "model_reader.h"
+#include "probe_json.h"
 #include "size_function_text.h"
 #include "worst_places.h"
-
-struct meshgrow_field {
-  meshgrow_field() = default;
-  explicit meshgrow_field(const char* file) : model_field(std::string(file)) {}
-
-  meshgrow::ModelField model_field;
-};
 
 namespace {
 
@@ -550,6 +545,27 @@ int meshgrow_field_write_view(meshgrow_field* field, const char* path, int dim, 
       *cells = written;
     }
     return 0;
+  });
+}
+
+char* meshgrow_field_probe_json(meshgrow_field* field, int dim, int tag, const double* point) {
+  return guarded(static_cast<char*>(nullptr), [&] {
+    deref(field).refresh_if_needed();
+    const meshgrow::SizeField& size_field = deref(field).field();
+    if (!size_field.topology().contains({dim, tag})) {
+      throw Error(meshgrow::entity_name({dim, tag}) +
+                  " is not in the model: check its dimension and tag.");
+    }
+    const meshgrow::Vec3 p(point[0], point[1], point[2]);
+    if (!p.allFinite()) {
+      throw Error("A point to probe has a coordinate that is not finite: give three numbers.");
+    }
+    const meshgrow::Probe found = size_field.probe({dim, tag}, p);
+    if (deref(field).is_from_file()) {
+      return copy_text(meshgrow::probe_json(size_field, found, p, false).dump());
+    }
+    const meshgrow::CurrentModel current(deref(field).model());
+    return copy_text(meshgrow::probe_json(size_field, found, p, true).dump());
   });
 }
 

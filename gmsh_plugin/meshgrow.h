@@ -193,6 +193,15 @@ MESHGROW_API int meshgrow_field_add_view(meshgrow_field* field, const char* name
 MESHGROW_API int meshgrow_field_write_view(meshgrow_field* field, const char* path, int dim,
                                            int tag, size_t* cells);
 
+/* Which size function and which facet decides the size on an entity at a point (three doubles), as
+ * JSON: {"size": …, "exact_size": …, "interpolated_size": … or null without a grid, "rule":
+ * "facet", "limit", "inside source" or "nothing", "function": {"index": …, "name": …, "kind": …,
+ * "text": …}, "facet": {"entity": [dim, tag], "element": tag or null, "corners": […], "start_size":
+ * …, "growth_rate": …, "slope": …, "distance": …} or null, "entity": …, "point": …}. NULL on
+ * failure. To be freed by meshgrow_free. The first call reads the sources. */
+MESHGROW_API char* meshgrow_field_probe_json(meshgrow_field* field, int dim, int tag,
+                                             const double* point);
+
 /* What Gmsh is told when it proposes `proposed` itself: the smaller of the two. */
 MESHGROW_API double meshgrow_field_answer(const meshgrow_field* field, int dim, int tag, double x,
                                           double y, double z, double proposed);

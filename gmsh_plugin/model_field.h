@@ -54,6 +54,7 @@ class ModelField {
   void create_defaults(std::vector<Entity> attachments, double growth_rate, double size_limit,
                        double min_size = 0.0);
 
+  bool is_from_file() const { return !file_.empty(); }
   const std::string& model() const { return model_; }
   SizeField& field() { return field_; }
   const SizeField& field() const { return field_; }

@@ -195,6 +195,16 @@ FieldCells field_cells(const SizeField& field, const std::optional<Entity>& enti
       exact_cells.append(cell);
     }
   });
+  for (FieldCell& cell : result.cells) {
+    const Box around(result.corner(cell, 0), result.corner(cell, 7));
+    for (const auto& [reach, size] : answering.inside) {
+      if (reach.intersects(around)) {
+        for (float& at_corner : cell.sizes) {
+          at_corner = std::min(at_corner, static_cast<float>(size));
+        }
+      }
+    }
+  }
   if (!entity && field.groups().size() > 1) {
     find_groups(field, result);
   }

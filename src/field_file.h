@@ -35,9 +35,11 @@ namespace meshgrow {
 //                  text: its name; text: its line (size_function_text.h); u8: 1 if it has an
 //                  effect; u64: its facets
 //     u64        count of groups, and for each
-//                  u64: count of its functions, and for each u64: index; u8: 1 inside its source
-//                  entities; f64: size limit; the tree; u8: 1 if there is
-//                  a grid; the grid
+//                  u64: count of its functions, and for each an action: u64 index; u8: 1 inside its
+//                  source entities; f64: size limit; action: whose limit that is; u64: count of
+//                  stretches of facets, and for each u64: first facet, before the tree was made;
+//                  u64: index of its function; u64: count of its entities, and for each u64: first
+//                  facet within the stretch; entity; the tree; u8: 1 if there is a grid; the grid
 //     tree       6 f64: box; 3 f64: centre; f64: unit; f64: largest slope; 7 arrays:
 //       facets     96 bytes: 9 f64 corners, i32 count of corners, 4 bytes 0, f64 start size, f64
 //                  slope; in the order of the tree (the units of the model)

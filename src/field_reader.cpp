@@ -111,18 +111,41 @@ class Reader {
     return result;
   }
 
+  SizeField::Action action(std::size_t functions) {
+    const std::size_t function = directory_.count();
+    directory_.require(function < functions);
+    return {function, directory_.number<std::uint8_t>() != 0};
+  }
+
+  std::vector<SizeField::Origin> origins(std::size_t functions) {
+    std::vector<SizeField::Origin> result(directory_.count_of(24));
+    for (SizeField::Origin& origin : result) {
+      origin.first_facet = directory_.count();
+      origin.function = directory_.count();
+      directory_.require(origin.function < functions);
+      const std::size_t stretches = directory_.count_of(16);
+      for (std::size_t i = 0; i < stretches; ++i) {
+        const std::size_t first = directory_.count();
+        origin.entities.begin(first, entity());
+      }
+    }
+    return result;
+  }
+
   SizeField::Part group(std::size_t index, std::size_t functions) {
     SizeField::Part result;
     const std::size_t actions = directory_.count_of(9);
     for (std::size_t i = 0; i < actions; ++i) {
-      const std::size_t function = directory_.count();
-      directory_.require(function < functions);
-      result.actions.push_back({function, directory_.number<std::uint8_t>() != 0});
+      result.actions.push_back(action(functions));
     }
     result.entities = entities();
     result.size_limit = directory_.number<double>();
+    result.limit = action(functions);
+    result.origins = origins(functions);
     where_ = path_ + ", group " + std::to_string(index + 1);
     result.tree = std::make_shared<FacetTree>(tree());
+    directory_.require(result.tree->empty() ||
+                       (!result.origins.empty() && result.origins.front().first_facet == 0));
     if (directory_.number<std::uint8_t>() != 0) {
       StoredGrid stored = grid(result.tree->stored().nodes.size());
       result.grid = std::make_shared<BackgroundGrid>(result.tree, std::move(stored));

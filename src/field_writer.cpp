@@ -112,14 +112,29 @@ class Writer {
     }
   }
 
+  void action(const SizeField::Action& action) {
+    directory_.count(action.function);
+    directory_.number<std::uint8_t>(action.inside_source ? 1 : 0);
+  }
+
   void group(const SizeField::Part& part) {
     directory_.count(part.actions.size());
-    for (const SizeField::Action& action : part.actions) {
-      directory_.count(action.function);
-      directory_.number<std::uint8_t>(action.inside_source ? 1 : 0);
+    for (const SizeField::Action& one : part.actions) {
+      action(one);
     }
     entities(part.entities);
     directory_.number(part.size_limit);
+    action(part.limit);
+    directory_.count(part.origins.size());
+    for (const SizeField::Origin& origin : part.origins) {
+      directory_.count(origin.first_facet);
+      directory_.count(origin.function);
+      directory_.count(origin.entities.stretches().size());
+      for (const auto& [first, source] : origin.entities.stretches()) {
+        directory_.count(first);
+        entity(source);
+      }
+    }
     const StoredTree& tree = part.tree->stored();
     box(tree.box);
     vector(tree.centre);

@@ -49,6 +49,7 @@ std::size_t SizeField::add(SizeFunction function) {
   functions_.push_back(std::move(function));
   facets_.emplace_back();
   facet_counts_.push_back(0);
+  origins_.emplace_back();
   effective_.push_back(false);
   regroup();
   numbers_given_ = number;
@@ -67,6 +68,7 @@ void SizeField::modify(std::size_t function, SizeFunction definition) {
   functions_[function] = std::move(definition);
   facets_[function].clear();
   facet_counts_[function] = 0;
+  origins_[function] = FacetOrigins();
   effective_[function] = false;
   mark_changed(function);
   regroup();
@@ -77,6 +79,7 @@ void SizeField::remove(std::size_t function) {
   functions_.erase(functions_.begin() + at);
   facets_.erase(facets_.begin() + at);
   facet_counts_.erase(facet_counts_.begin() + at);
+  origins_.erase(origins_.begin() + at);
   effective_.erase(effective_.begin() + at);
   const auto is_removed = [function](const Action& action) { return action.function == function; };
   groups_.erase(std::remove_if(groups_.begin(), groups_.end(),
@@ -85,9 +88,14 @@ void SizeField::remove(std::size_t function) {
                                                     is_removed);
                                }),
                 groups_.end());
+  const auto move_up = [function](std::size_t& index) { index -= index > function ? 1 : 0; };
   for (Group& group : groups_) {
     for (Action& action : group.actions) {
-      action.function -= action.function > function ? 1 : 0;
+      move_up(action.function);
+    }
+    move_up(group.limit.function);
+    for (Origin& origin : group.origins) {
+      move_up(origin.function);
     }
   }
   regroup();
@@ -157,8 +165,10 @@ DroppedFacets SizeField::set_sources(std::size_t function,
   const SizeFunction& definition = functions_[function];
   const double slope = growth_slope(definition.growth_rate);
   SizedFacets facets;
+  FacetOrigins origins;
   DroppedFacets dropped;
   for (const FacetedSource& source : sources) {
+    origins.begin(facets.size(), source.entity);
     if (definition.kind == Kind::mesh) {
       dropped += append_mesh_start_sizes(source, definition.quad_size, slope, facets);
     } else if (definition.kind == Kind::fixed) {
@@ -173,7 +183,7 @@ DroppedFacets SizeField::set_sources(std::size_t function,
       facet.start_size /= unit;
     }
   }
-  set_facets(function, std::move(facets));
+  set_facets(function, std::move(facets), std::move(origins));
   return dropped;
 }
 
@@ -183,13 +193,14 @@ void SizeField::set_regions(std::size_t function, const std::vector<WalledRegion
                                           definition.size_limit, definition.min_size,
                                           options_.threads};
   SizedFacets facets;
+  FacetOrigins origins;
   for (const WalledRegion& region : regions) {
-    append_proximity_start_sizes(region.walls, region.gaps.sources, parameters, facets);
+    append_proximity_start_sizes(region.walls, region.gaps.sources, parameters, facets, &origins);
   }
-  set_facets(function, std::move(facets));
+  set_facets(function, std::move(facets), std::move(origins));
 }
 
-void SizeField::set_facets(std::size_t function, SizedFacets facets) {
+void SizeField::set_facets(std::size_t function, SizedFacets facets, FacetOrigins origins) {
   const Kind kind = functions_[function].kind;
   const bool needs_facets = kind == Kind::mesh || kind == Kind::fixed;
   const bool effective = !needs_facets || !facets.empty();
@@ -198,6 +209,7 @@ void SizeField::set_facets(std::size_t function, SizedFacets facets) {
   }
   facets_[function] = std::move(facets);
   facet_counts_[function] = facets_[function].size();
+  origins_[function] = std::move(origins);
   effective_[function] = effective;
   mark_changed(function);
 }
@@ -307,16 +319,22 @@ void SizeField::build_tree(Group& group) const {
   const auto start = std::chrono::steady_clock::now();
   double size_limit = no_size;
   SizedFacets facets;
+  group.origins.clear();
   for (const Action& action : group.actions) {
     if (!is_effective(action.function)) {
       continue;
     }
     const SizeFunction& function = functions_[action.function];
-    size_limit = std::min(size_limit, function.size_limit);
-    if (action.inside_source) {
-      size_limit = std::min(size_limit, function.start_size);
-    } else {
+    double limit = function.size_limit;
+    const bool has_one_size = action.inside_source && function.start_size <= limit;
+    limit = has_one_size ? function.start_size : limit;
+    if (limit < size_limit) {
+      size_limit = limit;
+      group.limit = {action.function, has_one_size};
+    }
+    if (!action.inside_source) {
       const SizedFacets& more = facets_[action.function];
+      group.origins.push_back({facets.size(), action.function, origins_[action.function]});
       facets.insert(facets.end(), more.begin(), more.end());
     }
   }
@@ -460,8 +478,8 @@ SizeField::Parts SizeField::parts() const {
     if (group.changed || !group.tree) {
       throw Error("The size field has changed since it was built: build it before saving it.");
     }
-    parts.groups.push_back(
-        {group.actions, group.entities, group.size_limit, group.tree, group.grid});
+    parts.groups.push_back({group.actions, group.entities, group.size_limit, group.limit,
+                            group.origins, group.tree, group.grid});
   }
   return parts;
 }
@@ -471,6 +489,7 @@ SizeField::SizeField(Parts parts)
       functions_(std::move(parts.functions)),
       facets_(functions_.size()),
       facet_counts_(std::move(parts.facet_counts)),
+      origins_(functions_.size()),
       effective_(std::move(parts.effective)) {
   options_.tolerance = parts.tolerance;
   for (Part& part : parts.groups) {
@@ -482,6 +501,8 @@ SizeField::SizeField(Parts parts)
     group.entities = std::move(part.entities);
     group.changed = false;
     group.size_limit = part.size_limit;
+    group.limit = part.limit;
+    group.origins = std::move(part.origins);
     group.tree = std::move(part.tree);
     group.grid = std::move(part.grid);
     groups_.push_back(std::move(group));

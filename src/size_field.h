@@ -11,6 +11,8 @@
 
 #include "answer_count.h"
 #include "background_grid.h"
+#include "facet_origins.h"
+#include "probe.h"
 #include "region_walls.h"
 #include "size_function.h"
 #include "topology.h"
@@ -131,8 +133,9 @@ class SizeField {
                    double* sizes) const;
 
   /// The smallest size that any group asks for at the points, for who knows no entity: what a view
-  /// or a server answers. From grids where there are any. `groups`, unless null, gets the index
-  /// into groups() of the one that decides (the first of equal ones).
+  /// or a server answers. From grids where there are any. What is inside a source volume of a fixed
+  /// function asks only within its box. `groups`, unless null, gets the index into groups() of the
+  /// one that decides (the first of equal ones).
   void smallest_sizes(const Vec3* points, std::size_t count, double* sizes,
                       std::size_t* groups = nullptr) const;
 
@@ -143,12 +146,20 @@ class SizeField {
     Box box;                                     ///< of the entities
     std::shared_ptr<const BackgroundGrid> grid;  ///< null if there is none
     std::size_t group = 0;                       ///< index into groups(); 0 of all together
+    std::vector<std::pair<Box, double>> inside;  ///< no size is above this one in this box
   };
   /// The group of an entity; nothing if no function acts on it.
   Answering answering(const Entity& entity) const;
   /// A tree of the facets of all groups: the smallest size that any group asks for, in the box of
   /// the whole model. Made anew at each call if there are several groups, and without a grid then.
   Answering answering_together() const;
+
+  /// Which function and which facet decides the size on the entity at p. As `size`, it is about
+  /// what was built last.
+  Probe probe(const Entity& entity, const Vec3& p) const;
+
+  /// The same for the group that asks for the smallest size at p, by one of its entities.
+  Probe probe(const Vec3& p) const;
 
   struct GroupSummary {
     std::vector<Entity> entities;
@@ -177,11 +188,20 @@ class SizeField {
     }
   };
 
+  /// Where a stretch of the facets that a tree was made from comes from.
+  struct Origin {
+    std::size_t first_facet = 0;
+    std::size_t function = 0;
+    FacetOrigins entities;  ///< counted from the first facet
+  };
+
   /// All that a built field answers from, for a file (field_file.h).
   struct Part {
     std::vector<Action> actions;
     std::vector<Entity> entities;
     double size_limit = no_size;
+    Action limit;                 ///< whose size limit that is, or start size inside a source
+    std::vector<Origin> origins;  ///< of the facets of the tree
     std::shared_ptr<const FacetTree> tree;
     std::shared_ptr<const BackgroundGrid> grid;  ///< null if there is none
   };
@@ -214,6 +234,8 @@ class SizeField {
     std::vector<Entity> entities;
     bool changed = true;
     double size_limit = no_size;
+    Action limit;                 ///< whose size limit that is, or start size inside a source
+    std::vector<Origin> origins;  ///< of the facets of the tree
     std::shared_ptr<const FacetTree> tree;
     double tree_seconds = 0.0;
     std::shared_ptr<AnswerCount> answers = std::make_shared<AnswerCount>();
@@ -223,7 +245,7 @@ class SizeField {
   void regroup();
   void check_name(const std::string& name, std::size_t but_for) const;
   void mark_changed(std::size_t function);
-  void set_facets(std::size_t function, SizedFacets facets);
+  void set_facets(std::size_t function, SizedFacets facets, FacetOrigins origins);
   void build_tree(Group& group) const;
   void build_grid(std::size_t index, Group& group) const;
   int threads_for(std::size_t facets) const;
@@ -235,6 +257,7 @@ class SizeField {
   void ask_at_finite(const Entity& entity, const Vec3* points, std::size_t count, double* sizes,
                      Ask ask) const;
   const Group* group(const Entity& entity) const;
+  Box reach_of(const Group& group) const;
 
   Topology topology_;
   FieldOptions options_;
@@ -242,6 +265,7 @@ class SizeField {
   std::size_t numbers_given_ = 0;
   std::vector<SizedFacets> facets_;
   std::vector<std::size_t> facet_counts_;
+  std::vector<FacetOrigins> origins_;  ///< of the facets of each function
   std::vector<bool> effective_;
   std::vector<Group> groups_;
   std::unordered_map<Entity, std::size_t, EntityHash> group_of_;

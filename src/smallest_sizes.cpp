@@ -30,6 +30,22 @@ void keep_one_of_each(SizedFacets& facets) {
 
 }  // namespace
 
+/// Where the group may be asked by who does not know the entity: a group inside a source volume
+/// takes every point to be in there.
+Box SizeField::reach_of(const Group& group) const {
+  if (std::none_of(group.actions.begin(), group.actions.end(),
+                   [](const Action& action) { return action.inside_source; })) {
+    return Box(Vec3::Constant(-no_size), Vec3::Constant(no_size));
+  }
+  const Box box = box_of(group);
+  if (box.isEmpty()) {
+    return box;
+  }
+  // The boxes of bent surfaces may be a little too small.
+  const Vec3 more = Vec3::Constant(0.01 * box.diagonal().norm());
+  return Box(box.min() - more, box.max() + more);
+}
+
 void SizeField::smallest_sizes(const Vec3* points, std::size_t count, double* sizes,
                                std::size_t* groups) const {
   std::fill(sizes, sizes + count, no_size);
@@ -38,9 +54,10 @@ void SizeField::smallest_sizes(const Vec3* points, std::size_t count, double* si
   }
   std::vector<double> of_group(count);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Box reach = reach_of(groups_[g]);
     this->sizes(groups_[g].entities.front(), points, count, of_group.data());
     for (std::size_t i = 0; i < count; ++i) {
-      if (of_group[i] < sizes[i]) {
+      if (of_group[i] < sizes[i] && reach.contains(points[i])) {
         sizes[i] = of_group[i];
         if (groups != nullptr) {
           groups[i] = g;
@@ -78,7 +95,11 @@ SizeField::Answering SizeField::answering_together() const {
     for (const Group* group : built) {
       const auto& more = group->tree->facets();
       facets.insert(facets.end(), more.begin(), more.end());
-      result.size_limit = std::min(result.size_limit, group->size_limit);
+      if (group->limit.inside_source) {
+        result.inside.emplace_back(reach_of(*group), group->size_limit);
+      } else {
+        result.size_limit = std::min(result.size_limit, group->size_limit);
+      }
     }
     keep_one_of_each(facets);
     const int threads = threads_for(facets.size());

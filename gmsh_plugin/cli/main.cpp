@@ -10,7 +10,9 @@
 #include "gmsh_session.h"
 #include "mesh_command.h"
 #include "meshgrow.h"
+#include "probe_command.h"
 #include "report_command.h"
+#include "serve_command.h"
 #include "usage_error.h"
 
 namespace {
@@ -49,12 +51,20 @@ int main(int argc, char** argv) {
     meshgrow::cli::add_mesh_command(app, arguments);
     meshgrow::cli::add_report_command(app);
     meshgrow::cli::add_field_command(app);
+    meshgrow::cli::add_probe_command(app);
+    meshgrow::cli::add_serve_command(app);
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
     app.parse(std::move(arguments));
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? meshgrow::cli::done : meshgrow::cli::wrong_use;
+    if (app.exit(error) == 0) {
+      return meshgrow::cli::done;
+    }
+    if (app.got_subcommand("serve")) {
+      meshgrow::cli::serve_nothing();  // Gmsh waits for answers all the same
+    }
+    return meshgrow::cli::wrong_use;
   } catch (const meshgrow::cli::UsageError& error) {
     return fail(error, meshgrow::cli::wrong_use);
   } catch (const std::exception& error) {

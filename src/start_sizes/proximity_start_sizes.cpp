@@ -144,7 +144,8 @@ double gap_start_size(double gap, double cells, double growth_rate) {
 }
 
 void append_proximity_start_sizes(const std::vector<Wall>& walls, const std::set<Entity>& sources,
-                                  const ProximityParameters& parameters, SizedFacets& facets) {
+                                  const ProximityParameters& parameters, SizedFacets& facets,
+                                  FacetOrigins* origins) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < walls.size(); ++i) {
     if (sources.count(walls[i].entity) > 0) {
@@ -160,16 +161,27 @@ void append_proximity_start_sizes(const std::vector<Wall>& walls, const std::set
     box.extend(wall.facet.box());
   }
   const WallSizer sizer(finder, parameters, box.diagonal().norm());
-  std::vector<SizedFacets> found((chosen.size() + walls_per_chunk - 1) / walls_per_chunk);
+  struct Chunk {
+    SizedFacets facets;
+    FacetOrigins origins;
+  };
+  std::vector<Chunk> found((chosen.size() + walls_per_chunk - 1) / walls_per_chunk);
   parallel_for(found.size(), parameters.threads, [&](std::size_t chunk) {
     const std::size_t first = chunk * walls_per_chunk;
     const std::size_t last = std::min(first + walls_per_chunk, chosen.size());
     for (std::size_t i = first; i < last; ++i) {
-      sizer.append(walls[chosen[i]], chosen[i], found[chunk]);
+      const Wall& wall = walls[chosen[i]];
+      found[chunk].origins.begin(found[chunk].facets.size(), wall.entity);
+      sizer.append(wall, chosen[i], found[chunk].facets);
     }
   });
-  for (const SizedFacets& of_chunk : found) {
-    facets.insert(facets.end(), of_chunk.begin(), of_chunk.end());
+  for (const Chunk& chunk : found) {
+    if (origins != nullptr) {
+      for (const auto& [first, entity] : chunk.origins.stretches()) {
+        origins->begin(facets.size() + first, entity);
+      }
+    }
+    facets.insert(facets.end(), chunk.facets.begin(), chunk.facets.end());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "entity.h"
+#include "facet_origins.h"
 #include "region_walls.h"
 #include "sized_facets.h"
 
@@ -26,7 +27,7 @@ double gap_start_size(double gap, double cells, double growth_rate);
 /// Initialization of a proximity size function (paper, section 3) in one region: each wall of one
 /// of the `sources` gets the start size for the gap between it and the wall opposite, through the
 /// region. Walls are cut into pieces as small as the gap varies, at most as long as the size limit.
-/// Appends to `facets`.
+/// Appends to `facets`, and to `origins` of which entities they are.
 ///
 /// The gap at a point of a wall is the smaller one of the distance along its normal to the first
 /// wall met (in volumes), and of the distance to the closest wall that is seen within 45° of the
@@ -38,7 +39,8 @@ double gap_start_size(double gap, double cells, double growth_rate);
 /// none near its tip, however fine or coarse its facets are. The result does not depend on the
 /// number of threads.
 void append_proximity_start_sizes(const std::vector<Wall>& walls, const std::set<Entity>& sources,
-                                  const ProximityParameters& parameters, SizedFacets& facets);
+                                  const ProximityParameters& parameters, SizedFacets& facets,
+                                  FacetOrigins* origins = nullptr);
 
 }  // namespace meshgrow
 

@@ -13,6 +13,7 @@ from ._library import (PROGRESS_LISTENER, STOP_REQUEST, USER_SIZES, DimTag, DimT
                        dim_tags, doubles, lib, points_array, sizes_array, take_text)
 from ._interrupts import interrupts_kept
 from ._plan import Plan
+from ._probe import probe
 from ._raised import Raised
 from ._user_sizes import UserSizes
 from ._view import add_view, write_view
@@ -290,6 +291,17 @@ class SizeField:
                    out: Optional[Doubles] = None) -> Doubles:
         """The same without the grid: the minimum over all facets of the sources."""
         return self._sizes(lib.meshgrow_field_exact_size, dim, tag, points, out)
+
+    def probe(self, dim: int, tag: int, point: npt.ArrayLike) -> Dict[str, Any]:
+        """What decides the size on an entity at a point, as a dictionary.
+
+        ``size`` is what is answered, ``exact_size`` without and ``interpolated_size`` with a grid
+        (None if there is none), ``rule`` is ``"facet"``, ``"limit"``, ``"inside source"`` or
+        ``"nothing"``, ``function`` has ``index``, ``name``, ``kind`` and ``text``, and ``facet``
+        (None for other rules) its ``entity``, ``element`` (tag, or None), ``corners``,
+        ``start_size``, ``growth_rate``, ``slope`` and ``distance`` from the point.
+        """
+        return probe(self._handle, operator.index(dim), operator.index(tag), point)
 
     def smallest_size(self, points: npt.ArrayLike, out: Optional[Doubles] = None) -> Doubles:
         """The same for who knows no entity: the smallest size that any function asks for."""

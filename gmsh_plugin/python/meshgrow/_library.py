@@ -70,6 +70,7 @@ _SIGNATURES = {
         _INT, [_FIELD, ctypes.c_char_p, ctypes.c_char_p, _INT, _INT, _DOUBLES, _INT, _INTS]),
     "meshgrow_field_write_view": (
         _INT, [_FIELD, ctypes.c_char_p, _INT, _INT, ctypes.POINTER(_SIZE)]),
+    "meshgrow_field_probe_json": (_TEXT, [_FIELD, _INT, _INT, _DOUBLES]),
     "meshgrow_field_answer": (
         _DOUBLE, [_FIELD, _INT, _INT, _DOUBLE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "meshgrow_field_callback": (

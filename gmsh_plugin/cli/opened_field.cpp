@@ -1,0 +1,51 @@
+#include "opened_field.h"
+
+#include <iostream>
+
+#include "c_field.h"
+#include "field_file.h"
+#include "gmsh_api.h"
+#include "model_file.h"
+#include "usage_error.h"
+
+namespace meshgrow::cli {
+
+OpenedField::OpenedField(const std::string& path, const FieldArguments& arguments, int mesh_dim) {
+  const std::vector<std::string> texts = size_function_texts(arguments);
+  if (is_field_file(path)) {
+    if (!texts.empty() || arguments.defaults_limit != 0.0) {
+      throw UsageError(path +
+                       " is a size field with functions of its own: give it without size "
+                       "functions.");
+    }
+    field_.reset(meshgrow_field_load(path.c_str()));
+    check(field_ ? 0 : 1);
+    return;
+  }
+  session_.emplace();
+  open_model(path);
+  if (!has_size_functions(arguments, texts)) {
+    throw UsageError("No size function is given for " + path +
+                     ": give some by --size-function, --size-functions or --defaults.");
+  }
+  // Gmsh calls it an error that an entity without a mesh or geometry has no box.
+  const double verbosity = gmsh::option("General.Verbosity");
+  gmsh::set_option("General.Verbosity", 0.0);
+  field_ = make_field(arguments, texts);
+  gmsh::set_option("General.Verbosity", verbosity);
+  check(meshgrow_field_set_progress(
+      field_.get(),
+      [](const char* line, void*) {
+        std::cerr << line << std::endl;
+        return 0;
+      },
+      nullptr));
+  if (mesh_dim > 0) {
+    check(meshgrow_field_generate(field_.get(), mesh_dim, 0));
+  }
+  check(meshgrow_field_refresh(field_.get()));
+}
+
+const SizeField& OpenedField::field() const { return field_->model_field.field(); }
+
+}  // namespace meshgrow::cli

@@ -1,0 +1,17 @@
+"""What decides a size: which function, and which facet of which entity."""
+
+import json
+
+from ._library import doubles, lib, points_array, take_text
+
+
+def probe(handle, dim, tag, point):
+    """See :meth:`SizeField.probe`."""
+    array = points_array(point)
+    if len(array) != 1:
+        raise ValueError("give one point of three coordinates, not %d" % len(array))
+    found = json.loads(take_text(lib.meshgrow_field_probe_json(handle, dim, tag, doubles(array))))
+    for owner in (found, found["facet"] or {}):
+        if owner.get("entity") is not None:
+            owner["entity"] = tuple(owner["entity"])
+    return found
