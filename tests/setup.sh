@@ -54,7 +54,8 @@ make_python() {
     say "Installing the newest Gmsh from PyPI into $build/venv"
     mkdir -p "$build"
     "$python_debian" -m venv "$build/venv" &&
-      "$build/venv/bin/pip" install --quiet --disable-pip-version-check gmsh numpy pytest pillow ||
+      "$build/venv/bin/pip" install --quiet --disable-pip-version-check gmsh numpy pytest pillow \
+        distributed ||
       fail "the newest gmsh could not be installed from PyPI."
     touch "$build/venv/complete"
   fi
