@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -109,15 +108,11 @@ int sizes_at(meshgrow_field* field, SizesOf sizes_of, int dim, int tag, const do
       throw Error(meshgrow::entity_name({dim, tag}) +
                   " is not in the model: check its dimension and tag.");
     }
-    std::array<meshgrow::Vec3, 256> chunk;
-    for (size_t first = 0; first < points_n; first += chunk.size()) {
-      const size_t count = std::min(chunk.size(), points_n - first);
-      for (size_t i = 0; i < count; ++i) {
-        const double* p = points + 3 * (first + i);
-        chunk[i] = meshgrow::Vec3(p[0], p[1], p[2]);
-      }
-      (size_field.*sizes_of)({dim, tag}, chunk.data(), count, sizes + first);
-    }
+    // A vector is its three coordinates and nothing else, so the caller's array is read in place.
+    static_assert(sizeof(meshgrow::Vec3) == 3 * sizeof(double) &&
+                  alignof(meshgrow::Vec3) == alignof(double));
+    (size_field.*sizes_of)({dim, tag}, reinterpret_cast<const meshgrow::Vec3*>(points), points_n,
+                           sizes);
     return 0;
   });
 }

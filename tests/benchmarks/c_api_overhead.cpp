@@ -1,0 +1,89 @@
+// Sizes of a million points by the C function beside the same by the core's C++ function, by turns,
+// from a grid and from the tree. Arguments: number of facets (default 200,000), of points.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+#include "field_file.h"
+#include "graded_sphere.h"
+#include "meshgrow.h"
+#include "random_facets.h"
+
+using namespace meshgrow;
+
+namespace {
+
+template <typename Work>
+double seconds(Work work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+SizeField sphere_field(std::size_t facets) {
+  Topology topology;
+  topology.add_entity({2, 1}, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
+  topology.add_entity({3, 1}, {{2, 1}}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
+  SizeField field(topology);
+  SizeFunction function;
+  function.sources = {{2, 1}};
+  function.attachments = {{3, 1}};
+  function.size_limit = 1.0;
+  field.add(function);
+  FacetedSource source;
+  source.entity = {2, 1};
+  source.triangles = test::graded_sphere(facets, 20.0);
+  field.set_sources(0, {source});
+  field.build_grids();
+  return field;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::size_t facets = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 200000;
+  const std::size_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1000000;
+  const std::string path = (std::filesystem::temp_directory_path() / "c_api_overhead.mgf").string();
+  save_field(sphere_field(facets), path);
+  const SizeField field = load_field(path);
+  meshgrow_field* c_field = meshgrow_field_load(path.c_str());
+
+  test::Random random(1);
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) {
+    p = test::random_in_box(random, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
+  }
+  std::vector<double> sizes(count);
+  std::vector<double> c_sizes(count);
+  bool same = c_field != nullptr;
+  for (const bool exact : {false, true}) {
+    std::vector<double> cpp_times;
+    std::vector<double> c_times;
+    for (int turn = 0; turn < 8 && same; ++turn) {
+      cpp_times.push_back(seconds([&] {
+        exact ? field.exact_sizes({3, 1}, points.data(), count, sizes.data())
+              : field.sizes({3, 1}, points.data(), count, sizes.data());
+      }));
+      c_times.push_back(seconds([&] {
+        (exact ? meshgrow_field_exact_size : meshgrow_field_size)(
+            c_field, 3, 1, points.data()->data(), count, c_sizes.data());
+      }));
+      same = sizes == c_sizes;
+    }
+    std::printf("%zu points, %s: C++ %.1f ns a point, C %.3f times as long; %s\n", count,
+                exact ? "exact" : "grid", 1e9 * median(cpp_times) / static_cast<double>(count),
+                median(c_times) / median(cpp_times), same ? "the same to the bit" : "DIFFERENT");
+  }
+  meshgrow_field_destroy(c_field);
+  std::filesystem::remove(path);
+  return same ? 0 : 1;
+}
