@@ -50,14 +50,15 @@ install_packages() {
 make_python() {
   python_debian=/usr/bin/python3
   python_newest=$build/venv/bin/python
-  if [ ! -e "$build/venv/complete" ]; then
+  local complete=$build/venv/complete-2  # another number when other packages are wanted
+  if [ ! -e "$complete" ]; then
     say "Installing the newest Gmsh from PyPI into $build/venv"
     mkdir -p "$build"
     "$python_debian" -m venv "$build/venv" &&
       "$build/venv/bin/pip" install --quiet --disable-pip-version-check gmsh numpy pytest pillow \
-        distributed ||
+        pygmsh meshio distributed ||
       fail "the newest gmsh could not be installed from PyPI."
-    touch "$build/venv/complete"
+    touch "$complete"
   fi
   libgmsh_newest=$(ls "$build"/venv/lib/libgmsh.so.* | head -n 1)
   libgmsh_debian=$(ls /usr/lib/*/libgmsh.so.4.8 | head -n 1)

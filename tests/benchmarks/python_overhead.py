@@ -5,7 +5,8 @@
 First `field.size` on a million points beside the same call of the C function with everything
 prepared, by turns; c_api_overhead measures the C function beside the C++ one. Then whole runs of
 Gmsh with HXT, which asks for two sizes a tetrahedron: with the registered field, with the field as
-Gmsh's callback, and with a lambda around it, by turns. Fails where the sizes or meshes differ.
+Gmsh's callback, and with a lambda around it, by turns. Fails where sizes differ, or numbers
+of tetrahedra by more than 1 %.
 """
 
 import argparse
@@ -112,7 +113,7 @@ def measure_callbacks(size, repeats):
         mesh_again()
 
     times = by_turns([registered, called, in_lambda], repeats)
-    if element_count(model.outer) != expected:
+    if abs(element_count(model.outer) - expected) > 0.01 * expected:
         sys.exit("error: %d tetrahedra instead of %d" % (element_count(model.outer), expected))
     print("%9d sizes asked for, %d tetrahedra" % (calls, expected))
     for name, taken in zip(("register()", "setSizeCallback(field)", "lambda with the field"), times):
@@ -127,7 +128,7 @@ def main():
     start()
     print("Gmsh %s" % gmsh.option.getString("General.Version"))
     measure_many_points(100000 if quick else 1000000, 3 if quick else 9)
-    measure_callbacks(0.1 if quick else 0.06, 1 if quick else 5)
+    measure_callbacks(0.1, 1 if quick else 5)
     gmsh.finalize()
 
 

@@ -89,3 +89,24 @@ def test_default_functions_resolve_the_gaps_of_real_parts(example, tmp_path):
     assert kept["surface"]["elements"] == 1580
     assert kept["volume"]["ratio_99"] > 10  # Gmsh can do nothing with these triangles
     assert (tmp_path / "real_parts_t13_data_meshgrow.msh").exists()
+
+
+def test_own_sizes_and_a_field_act_together_either_way(example, tmp_path):
+    rows = example("callbacks").main()
+    alone, combined, in_lambda = rows.values()
+    assert combined["elements"] == in_lambda["elements"] > 3 * alone["elements"]
+    assert combined["ratio_99"] <= 1.35 and combined["length_share_over_2"] <= 0.01
+    assert (tmp_path / "callbacks_lambda.msh").exists()
+
+
+def test_the_plain_script_works(example, tmp_path):
+    report = example("plain_gmsh").main(str(tmp_path / "plain.msh"))
+    assert report["elements"] > 3000 and report["ratio_99"] <= 1.37
+    assert (tmp_path / "plain.msh").exists()
+
+
+def test_models_of_pygmsh_are_meshed(example, tmp_path):
+    pytest.importorskip("pygmsh")
+    report = example("with_pygmsh").main(str(tmp_path / "pygmsh.msh"))
+    assert report["elements"] > 5000 and report["ratio_99"] <= 1.35
+    assert (tmp_path / "pygmsh.msh").exists()
