@@ -2,9 +2,9 @@
 // from a grid and from the tree. Arguments: number of facets (default 200,000), of points.
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <vector>
 
@@ -17,11 +17,12 @@ using namespace meshgrow;
 
 namespace {
 
+/// Of the processor, so that other programs do not count.
 template <typename Work>
 double seconds(Work work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 double median(std::vector<double> values) {
