@@ -325,6 +325,42 @@ class SizeField {
     check(meshgrow_field_exact_size(c_field(), dim, tag, points, count, sizes));
   }
 
+  /// The same for who knows no entity: the smallest size that any function asks for.
+  std::vector<double> smallest_size(const std::vector<double>& points) const {
+    std::vector<double> sizes(points.size() / 3);
+    check_points(points);
+    check(meshgrow_field_smallest_size(c_field(), points.data(), sizes.size(), sizes.data()));
+    return sizes;
+  }
+
+  /// Stands for no entity in the two functions below: the smallest size that any function asks for.
+  static constexpr std::pair<int, int> no_entity = {-1, 0};
+
+  /// Puts the field of an entity into Gmsh as a post-processing view and returns the view's tag.
+  /// `kind`: "cells" (of the background grid), "plane" (a cut) or "mesh" (at the nodes of the
+  /// mesh). `plane`: a point and a normal, six numbers; if empty, through the middle of the
+  /// entity's box. `resolution`: squares along the longer side of the cut; 0 for 32.
+  int add_view(const std::string& name = "sizes", const std::string& kind = "cells",
+               std::pair<int, int> entity = no_entity, const std::vector<double>& plane = {},
+               int resolution = 0) const {
+    if (!plane.empty() && plane.size() != 6) {
+      throw Error("A plane is a point and a normal: give six numbers.");
+    }
+    int view = 0;
+    check(meshgrow_field_add_view(c_field(), name.c_str(), kind.c_str(), entity.first,
+                                  entity.second, plane.empty() ? nullptr : plane.data(), resolution,
+                                  &view));
+    return view;
+  }
+
+  /// Writes the field of an entity into a file: .vtu (ParaView), .pos (a view that any Gmsh can
+  /// take for a background field) or .msh. Returns the number of cells.
+  std::size_t write_view(const std::string& path, std::pair<int, int> entity = no_entity) const {
+    std::size_t cells = 0;
+    check(meshgrow_field_write_view(c_field(), path.c_str(), entity.first, entity.second, &cells));
+    return cells;
+  }
+
   /// Functions, groups and grids as text for people.
   std::string summary() const { return detail::take_text(meshgrow_field_summary(c_field())); }
   /// The same as JSON: {"functions": […], "groups": […]}.

@@ -148,6 +148,12 @@ void sizes_are_answered() {
   expect(field(3, volume, 0, 0.5, 0.5) == sizes[0], "size of the callback, as for 4.8");
   expect(field(3, volume, 0, 0.5, 0.5, 0.01) == 0.01, "smaller proposal");
   expect(field(3, 99, 0, 0.5, 0.5) == meshgrow::SizeField::gmsh_no_size, "no size");
+  expect(field.smallest_size({0, 0.5, 0.5}) == std::vector<double>{sizes[0]}, "smallest size");
+  expect(field.add_view("s", "plane", {3, volume}, {0.5, 0.5, 0.5, 0, 0, 1}, 8) >= 0, "view");
+  expect_in("six", thrown<meshgrow::Error>([&] {
+              field.add_view("s", "plane", {3, volume}, {0.5, 0.5});
+            }));
+  expect_in("nonsense", thrown<meshgrow::Error>([&] { field.write_view("sizes.nonsense"); }));
   expect_in("Volume 99",
             thrown<meshgrow::Error>([&] { field.size(3, 99, std::vector<double>(3)); }));
   expect_in("three",
