@@ -113,8 +113,8 @@ void mesh(const MeshArguments& arguments) {
   using Task = GmshCommandLine::Task;
   const std::vector<std::string> texts = size_function_texts(arguments.field);
   const std::vector<FailCondition> conditions = parse_fail_conditions(arguments.fail_if);
-  end_when_interrupted();
   const GmshSession session(arguments.gmsh.options);
+  end_when_interrupted();  // Gmsh, too, sets what signals do
   std::cout << "Reading " << arguments.models.front() << std::endl;
   open_model(arguments.models);
   if (arguments.gmsh.task == Task::parse) {

@@ -4,7 +4,6 @@ import json
 import os
 import re
 import subprocess
-import sys
 
 import gmsh
 import numpy as np
@@ -59,7 +58,6 @@ def test_the_worst_places_are_told_and_are_those_of_the_file(box, tmp_path):
     told = re.findall(r"elements (\d+) and (\d+) of Volume 1 at", result.stderr)
     assert [[int(a), int(b)] for a, b in told] == [p["elements"] for p in failed[0]["places"]]
 
-    gmsh.initialize()
     gmsh.open(str(out))
     numbers, points, _ = gmsh.model.mesh.getNodes()
     at = dict(zip(numbers, points.reshape(-1, 3)))
@@ -82,7 +80,6 @@ def test_the_worst_places_are_told_and_are_those_of_the_file(box, tmp_path):
     assert values == pytest.approx(sorted(sizes, reverse=True)[:10], rel=1e-9)
     assert [p["value"] for p in failed[1]["places"]] == sorted(
         p["value"] for p in failed[1]["places"])
-    gmsh.finalize()
 
 
 def test_lengths_are_compared_with_the_sizes_asked_for(box):
@@ -144,7 +141,3 @@ def test_the_report_is_written_whole_or_not_at_all(box, tmp_path):
     assert run("mesh", box, "-3", "--report", report).returncode == 0
     assert json.loads(report.read_text())[0]["report"]["elements"] > 0
     assert sorted(p.name for p in tmp_path.iterdir()) == ["box.geo", "box.msh", "report.json"]
-
-
-if __name__ == "__main__":
-    sys.exit(pytest.main([__file__]))

@@ -56,15 +56,11 @@ def files_of(directory):
 
 def counts(path):
     """Numbers of nodes, and of elements by type, and the physical groups of a mesh file."""
-    gmsh.initialize(["gmsh"], readConfigFiles=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    try:
-        gmsh.open(str(path))
-        nodes = len(gmsh.model.mesh.getNodes()[0])
-        types, tags, _ = gmsh.model.mesh.getElements()
-        return nodes, {t: len(n) for t, n in zip(types, tags)}, gmsh.model.getPhysicalGroups()
-    finally:
-        gmsh.finalize()
+    gmsh.clear()
+    gmsh.open(str(path))
+    nodes = len(gmsh.model.mesh.getNodes()[0])
+    types, tags, _ = gmsh.model.mesh.getElements()
+    return nodes, {t: len(n) for t, n in zip(types, tags)}, gmsh.model.getPhysicalGroups()
 
 
 SAME = [
@@ -197,7 +193,3 @@ def test_gmsh_options_act_beside_size_functions(directory, line):
     assert (11 if "-order 2" in line else 4) in types
     if "msh2" in line:
         assert files_of(directory)[name].startswith(b"$MeshFormat\n2.2 ")
-
-
-if __name__ == "__main__":
-    sys.exit(pytest.main([__file__]))

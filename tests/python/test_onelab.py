@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import sys
 
 import gmsh
 import pytest
@@ -72,13 +71,11 @@ def test_definitions_add_to_those_of_the_command_line_and_of_a_file(write, tmp_p
 
 
 def test_definitions_are_in_the_tree_that_gmsh_shows(write):
-    gmsh.initialize()
     gmsh.open(str(write(DEFINED)))
     names = gmsh.onelab.getNames("Size functions.*inner")
     assert list(names) == ["Size functions/b/inner"]
     assert list(gmsh.onelab.getString(names[0])) == [MESH]
     assert list(gmsh.onelab.getString("Size functions/a rim")) == [FIXED]
-    gmsh.finalize()
 
 
 def test_physical_names_need_no_quotes(write, tmp_path):
@@ -117,7 +114,3 @@ def test_report_measures_against_the_definitions_of_each_file(write, tmp_path):
     columns = [line.split() for line in lines[1:]]
     assert columns[0][6] != "-" and columns[1][6] == "-"
     assert result.returncode == 1 and "without.geo: length_median is unknown" in result.stderr
-
-
-if __name__ == "__main__":
-    sys.exit(pytest.main([__file__]))

@@ -2,9 +2,11 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
+import gmsh
 import pytest
 
 PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
@@ -173,9 +175,40 @@ def test_no_libgmsh(box):
 
 
 def test_wrong_command_line():
-    assert run("mesh").returncode != 0
-    assert run("weave").returncode != 0
-    assert run("--version").stdout.startswith("meshgrow ")
+    assert run("mesh").returncode == 2
+    assert run("weave").returncode == 2
+
+
+def test_exit_codes(box, tmp_path):
+    """2 for what was typed wrongly, 1 for what did not work."""
+    out = tmp_path / "out.msh"
+    assert run("mesh", box, "-2", "-o", out, "--size-function", "fixed").returncode == 2
+    assert run("mesh", box, "-2", "-o", out, "--evaluator", "best").returncode == 2
+    assert run("mesh", tmp_path / "no.geo", "-o", out).returncode == 2
+    assert run("mesh", box, "-o", tmp_path / "no" / "out.msh").returncode == 2
+    assert run("report", box).returncode == 2
+    assert run("mesh", box, "-1", "-o", out, "--strict", "--size-function",
+               "mesh source Surface{1} attach Volume{2} growth 1.2 limit 1").returncode == 1
+    assert run("mesh", box, MESHGROW_GMSH_LIB="/nowhere/libgmsh.so").returncode == 1
+    assert run("mesh", box, "-2", "-o", out).returncode == 0
+
+
+@pytest.mark.parametrize("command", ["mesh", "report"])
+def test_help_shows_an_example_and_the_exit_codes(command):
+    result = run(command, "--help")
+    assert result.returncode == 0
+    assert "meshgrow %s " % command in result.stdout.split("Example:")[1]
+    assert "Exit codes: 0 done; 1 " in result.stdout
+
+
+def test_version_names_the_gmsh_that_is_found():
+    path = os.environ["MESHGROW_GMSH_LIB"]
+    version = gmsh.option.getString("General.Version")
+    assert re.fullmatch(r"meshgrow \d+\.\d+\.\d+ with Gmsh %s \(%s\)\n" % (
+        re.escape(version), re.escape(path)), run("--version").stdout)
+    without = run("--version", MESHGROW_GMSH_LIB="/nowhere/libgmsh.so")
+    assert without.returncode == 0
+    assert re.match(r"meshgrow \d+\.\d+\.\d+ without Gmsh \(", without.stdout)
 
 
 def test_unknown_option_is_named(box):
