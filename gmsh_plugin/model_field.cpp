@@ -321,11 +321,15 @@ std::vector<std::size_t> ModelField::unread_functions() const {
 std::vector<FacetedSource> ModelField::read_fixed(std::size_t function,
                                                   const NodeCoordinates& nodes) const {
   const SizeFunction& definition = field_.functions()[function];
-  std::vector<FacetedSource> sources = read_meshed(function, nodes);
+  const Topology& topology = field_.topology();
+  std::vector<FacetedSource> sources;
   for (const Entity& source : definition.sources) {
-    if (std::none_of(sources.begin(), sources.end(),
-                     [&source](const FacetedSource& read) { return read.entity == source; })) {
-      sources.push_back(sample_geometry(source, field_.topology(), definition.start_size));
+    // A volume stands for its faces, and for what is embedded in it.
+    for (const Entity& part :
+         source.dim == 3 ? topology.lower(source) : std::vector<Entity>{source}) {
+      sources.push_back(part.dim > 0 && gmsh::has_elements(part)
+                            ? read_entity_mesh(part, nodes)
+                            : sample_geometry(part, topology, definition.start_size));
     }
   }
   return sources;

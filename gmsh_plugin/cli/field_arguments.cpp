@@ -8,6 +8,7 @@
 
 #include "background_grid.h"
 #include "onelab_functions.h"
+#include "size_function.h"
 #include "usage_error.h"
 
 namespace meshgrow::cli {
@@ -94,8 +95,13 @@ FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::
   check_usage(meshgrow_field_set_option(field.get(), "strict", arguments.strict ? 1.0 : 0.0));
   check_usage(meshgrow_field_set_option(field.get(), "calibrate", arguments.calibrate ? 1.0 : 0.0));
   for (const OnelabFunction& function : onelab_functions()) {
-    check_usage(meshgrow_field_add(field.get(), function.text.c_str()),
-                "Size functions/" + function.name + ": ");
+    const std::string where = "Size functions/" + function.name + ": ";
+    check_usage(meshgrow_field_add(field.get(), function.text.c_str()), where);
+    const std::string given = take_text(meshgrow_field_function_name(
+        field.get(), meshgrow_field_function_count(field.get()) - 1));
+    if (is_number_name(given) && !is_number_name(function.name)) {  // the text gives it no name
+      check_usage(meshgrow_field_rename(field.get(), given.c_str(), function.name.c_str()), where);
+    }
   }
   for (const std::string& text : texts) {
     check_usage(meshgrow_field_add(field.get(), text.c_str()));

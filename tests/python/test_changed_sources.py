@@ -93,3 +93,18 @@ def test_meshes_made_by_generate_itself_are_no_change():
     before = built()
     field.size(*model.right, [[1.5, 0.5, 0.5]])
     assert built() == before
+
+
+def test_a_fixed_source_volume_of_a_mesh_file_is_its_faces_meshes(tmp_path):
+    """A mesh file has no geometry: faces are what their elements are."""
+    model = models.two_boxes()
+    premesh([model.left, model.right], 0.4)
+    path = str(tmp_path / "boxes.msh")
+    gmsh.option.setNumber("Mesh.SaveAll", 1)
+    gmsh.write(path)
+    gmsh.clear()
+    gmsh.merge(path)
+    field = meshgrow.SizeField()
+    field.add_fixed([model.left], [model.right], 0.1, 1.25, 5.0)
+    # 0.5 from the face between the volumes: 0.1 + (1 - 1 / 1.25) * 0.5.
+    assert field.exact_size(*model.right, [[1.5, 0.5, 0.5]])[0] == pytest.approx(0.2)

@@ -66,7 +66,7 @@ def test_definitions_add_to_those_of_the_command_line_and_of_a_file(write, tmp_p
                 "--size-function", FIXED.replace("0.1", "0.2"))
     # Those of the model first, by name.
     assert all(kind in text for kind in (
-        "Fixed size function 1", "Mesh size function 2", "Fixed size function 3",
+        'Fixed size function "a rim"', 'Mesh size function "b/inner"', "Fixed size function 3",
         "Mesh size function 4"))
 
 
