@@ -33,7 +33,8 @@ expect_in "soname: [libmeshgrow.so.${version%%.*}]" "$work/library.txt"
 ! nm -D --defined-only "$library" | grep -v ' meshgrow_' || fail "these symbols are exported as well"
 
 # The program.
-[ "$("$prefix/bin/meshgrow" --version)" = "meshgrow $version" ] || fail "version of the program"
+"$prefix/bin/meshgrow" --version >"$work/version.txt" || fail "the program ran"
+expect_in "meshgrow $version" "$work/version.txt"
 
 # C++, with CMake; what only meshgrow's own build needs must not be looked for.
 cmake -S "$root/examples/cpp_project" -B "$work/cpp" -DCMAKE_PREFIX_PATH="$prefix" \
