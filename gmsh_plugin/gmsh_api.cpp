@@ -485,6 +485,11 @@ std::string last_error() {
   return take_string(message);
 }
 
+void optimize(const std::string& method) {
+  const int* everything = nullptr;
+  library().call("gmshModelMeshOptimize", method.c_str(), 0, 1, everything, std::size_t{0});
+}
+
 void partition(int count) {
   // Newer versions take prescribed partitions of elements as well.
   if (is_4_8()) {

@@ -139,6 +139,8 @@ void generate(int dim);
 /// Makes all elements of this order.
 void set_order(int order);
 std::string last_error();
+/// Optimizes the mesh by one of Gmsh's methods, such as "HighOrder".
+void optimize(const std::string& method);
 /// Cuts the mesh into so many partitions.
 void partition(int count);
 

@@ -62,6 +62,23 @@ int meshed_dimension(int dim) {
   return result;
 }
 
+/// What Gmsh's own generate does after meshing if it is asked for (-optimize_ho).
+void optimize_high_order() {
+  const auto method = static_cast<int>(gmsh::option("Mesh.HighOrderOptimize"));
+  if (gmsh::option("Mesh.ElementOrder") < 2.0) {
+    return;
+  }
+  if (method == 2 || method == 3) {
+    gmsh::optimize("HighOrderElastic");
+  }
+  if (method == 1 || method == 2) {
+    gmsh::optimize("HighOrder");
+  }
+  if (method == 4) {
+    gmsh::optimize("HighOrderFastCurving");
+  }
+}
+
 void generate(const MeshArguments& arguments, meshgrow_field* field) {
   Progress progress;
   if (field == nullptr) {
@@ -76,6 +93,7 @@ void generate(const MeshArguments& arguments, meshgrow_field* field) {
   if (failed != 0) {
     throw Error(problem);
   }
+  optimize_high_order();
 }
 
 /// Prints and writes the report. Returns whether the mesh is acceptable.
