@@ -333,6 +333,12 @@ class SizeField {
     return sizes;
   }
 
+  /// What decides the size on an entity at a point, as JSON: see meshgrow_field_probe_json.
+  std::string probe_json(int dim, int tag, double x, double y, double z) const {
+    const double point[3] = {x, y, z};
+    return detail::take_text(meshgrow_field_probe_json(c_field(), dim, tag, point));
+  }
+
   /// Stands for no entity in the two functions below: the smallest size that any function asks for.
   static constexpr std::pair<int, int> no_entity = {-1, 0};
 

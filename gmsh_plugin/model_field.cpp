@@ -463,7 +463,9 @@ void ModelField::read_if_needed() {
     refresh();
     return;
   }
-  const std::vector<std::size_t> unread = unread_functions();
+  // Within a run of Gmsh, which has thrown meshes away, a user's own callback may ask.
+  const bool may_run = is_registered() || ready_for_calls_;
+  const std::vector<std::size_t> unread = may_run ? unread_within_run() : unread_functions();
   if (unread.empty()) {
     return;
   }

@@ -28,8 +28,9 @@ bool read_list(const std::string& text, Value* values, int count) {
 
 Entity read_entity(const std::string& text, const Topology& topology) {
   int numbers[2] = {0, 0};
-  if (!read_list(text, numbers, 2)) {
-    throw UsageError("'" + text + "' is no entity: give its dimension and tag, for example 3,2.");
+  if (!read_list(text, numbers, 2) || numbers[0] < 0 || numbers[0] > 3) {
+    throw UsageError("'" + text +
+                     "' is no entity: give its dimension (0 to 3) and tag, for example 3,2.");
   }
   const Entity entity{numbers[0], numbers[1]};
   if (!topology.contains(entity)) {

@@ -97,8 +97,8 @@ FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::
   for (const OnelabFunction& function : onelab_functions()) {
     const std::string where = "Size functions/" + function.name + ": ";
     check_usage(meshgrow_field_add(field.get(), function.text.c_str()), where);
-    const std::string given = take_text(meshgrow_field_function_name(
-        field.get(), meshgrow_field_function_count(field.get()) - 1));
+    const std::string given = take_text(
+        meshgrow_field_function_name(field.get(), meshgrow_field_function_count(field.get()) - 1));
     if (is_number_name(given) && !is_number_name(function.name)) {  // the text gives it no name
       check_usage(meshgrow_field_rename(field.get(), given.c_str(), function.name.c_str()), where);
     }

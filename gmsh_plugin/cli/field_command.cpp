@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "c_field.h"
 #include "c_results.h"
+#include "entity_text.h"
 #include "error.h"
 #include "field_arguments.h"
 #include "field_file.h"
@@ -34,36 +36,6 @@ struct FieldCommandArguments {
   int verbosity = 2;
   FieldArguments field;
 };
-
-/// No entity.
-constexpr Entity everywhere = {-1, 0};
-
-/// Of "3,2".
-Entity parse_entity(const std::string& text) {
-  if (text.empty()) {
-    return everywhere;
-  }
-  const auto fail = [&text] {
-    throw UsageError("There is no entity '" + text +
-                     "': give its dimension and tag, such as --entity 3,2 for Volume 2.");
-  };
-  Entity entity;
-  std::size_t dim_end = 0;
-  std::size_t tag_end = 0;
-  try {
-    entity.dim = std::stoi(text, &dim_end);
-    if (text.substr(dim_end, 1) != ",") {
-      fail();
-    }
-    entity.tag = std::stoi(text.substr(dim_end + 1), &tag_end);
-  } catch (const std::logic_error&) {
-    fail();
-  }
-  if (dim_end + 1 + tag_end != text.size() || entity.dim < 0 || entity.dim > 3) {
-    fail();
-  }
-  return entity;
-}
 
 bool is_saved_field(const std::string& path) { return fs::path(path).extension() == ".mgf"; }
 
@@ -117,11 +89,16 @@ FieldPointer field_of_model(const FieldCommandArguments& arguments,
 }
 
 /// Writes in the format of the ending; returns how many cells.
-std::size_t write(meshgrow_field* field, const std::string& output, const Entity& entity) {
+std::size_t write(meshgrow_field* field, const std::string& output,
+                  const std::string& entity_text) {
   std::size_t cells = 0;
   if (is_saved_field(output)) {
     check(meshgrow_field_save(field, output.c_str()));
   } else {
+    Entity entity = {-1, 0};  // none
+    if (!entity_text.empty()) {
+      entity = read_entity(entity_text, field->model_field.field().topology());
+    }
     check(meshgrow_field_write_view(field, output.c_str(), entity.dim, entity.tag, &cells));
   }
   return cells;
@@ -137,7 +114,6 @@ void tell_written(meshgrow_field* field, const std::string& output, std::size_t 
 }
 
 void write_field(const FieldCommandArguments& arguments) {
-  const Entity entity = parse_entity(arguments.entity);
   const std::vector<std::string> texts = size_function_texts(arguments.field);
   const bool from_file = is_field_file(arguments.model);
   if (from_file && (!texts.empty() || arguments.field.defaults_limit != 0.0)) {
@@ -145,8 +121,12 @@ void write_field(const FieldCommandArguments& arguments) {
                      " is a size field with functions of its own: give it without size functions.");
   }
   if (!is_saved_field(arguments.output)) {
-    check_view_ending(arguments.output);
-  } else if (entity.dim >= 0) {
+    try {
+      check_view_ending(arguments.output);
+    } catch (const Error& error) {
+      throw UsageError(error.what());
+    }
+  } else if (!arguments.entity.empty()) {
     throw UsageError("A saved field (.mgf) is that of all entities: leave out --entity.");
   }
   if (fs::exists(arguments.output) && fs::exists(arguments.model) &&
@@ -157,7 +137,8 @@ void write_field(const FieldCommandArguments& arguments) {
   if (from_file) {
     const FieldPointer field(meshgrow_field_load(arguments.model.c_str()));
     check(field ? 0 : 1);
-    tell_written(field.get(), arguments.output, write(field.get(), arguments.output, entity));
+    tell_written(field.get(), arguments.output,
+                 write(field.get(), arguments.output, arguments.entity));
     return;
   }
   end_when_interrupted();
@@ -167,7 +148,7 @@ void write_field(const FieldCommandArguments& arguments) {
   {
     Progress progress;
     field = field_of_model(arguments, texts, progress);
-    cells = write(field.get(), arguments.output, entity);
+    cells = write(field.get(), arguments.output, arguments.entity);
     meshgrow_field_set_progress(field.get(), nullptr, nullptr);
   }
   tell_written(field.get(), arguments.output, cells);

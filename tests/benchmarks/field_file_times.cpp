@@ -1,5 +1,5 @@
-// How long a saved field takes to open, to give its first size, and to answer, beside the field that
-// was saved. Argument: number of facets (default 1,000,000).
+// How long a saved field takes to open, to give its first size, and to answer, beside the field
+// that was saved. Argument: number of facets (default 1,000,000).
 
 #include <chrono>
 #include <cstdio>

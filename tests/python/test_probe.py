@@ -151,7 +151,7 @@ def test_program_gives_json_for_several_points(boxes):
 ])
 def test_program_tells_what_is_wrong(boxes, arguments, words):
     result = run(boxes, *arguments)
-    assert result.returncode == 1
+    assert result.returncode == 2
     assert words in [line for line in result.stderr.splitlines()
                      if line.startswith("meshgrow: ")][0]
 

@@ -1,11 +1,16 @@
 """What decides a size: which function, and which facet of which entity."""
 
+from __future__ import annotations
+
 import json
+from typing import Any, Dict
+
+import numpy.typing as npt
 
 from ._library import doubles, lib, points_array, take_text
 
 
-def probe(handle, dim, tag, point):
+def probe(handle: int, dim: int, tag: int, point: npt.ArrayLike) -> Dict[str, Any]:
     """See :meth:`SizeField.probe`."""
     array = points_array(point)
     if len(array) != 1:
@@ -14,4 +19,4 @@ def probe(handle, dim, tag, point):
     for owner in (found, found["facet"] or {}):
         if owner.get("entity") is not None:
             owner["entity"] = tuple(owner["entity"])
-    return found
+    return found  # type: ignore[no-any-return]
