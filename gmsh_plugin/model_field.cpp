@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
-#include <optional>
 
 #include "error.h"
 #include "field_file.h"
-#include "geometry_sampler.h"
 #include "gmsh_api.h"
 #include "gmsh_state.h"
-#include "mesh_fingerprint.h"
 #include "model_reader.h"
-#include "number_text.h"
 #include "ordered_mesher.h"
 #include "remesh.h"
 #include "size_function_text.h"
@@ -25,19 +21,6 @@ Topology topology_of_current_model() {
   gmsh::require_gmsh();
   return read_topology();
 }
-
-/// Whether a function takes the sizes of a source's mesh itself.
-bool is_read_as_meshed(const SizeFunction& function, const Entity& source) {
-  return function.kind == Kind::mesh && (source.dim == 1 || source.dim == 2);
-}
-
-int highest(const std::vector<Entity>& entities) {
-  return std::max_element(entities.begin(), entities.end())->dim;
-}
-
-}  // namespace
-
-namespace {
 
 /// See FieldOptions::boundary.
 std::vector<std::array<Vec3, 3>> boundary_triangles(const std::vector<Entity>& volumes) {
@@ -126,29 +109,6 @@ std::size_t ModelField::add(SizeFunction function) {
   return index;
 }
 
-void ModelField::keep_meshed_sources(std::size_t first_function) {
-  try {
-    const CurrentModel current(model_);
-    for (std::size_t i = first_function; i < field_.functions().size(); ++i) {
-      for (const Entity& source : field_.functions()[i].sources) {
-        if (is_read_as_meshed(field_.functions()[i], source) && kept_.count(source) == 0 &&
-            gmsh::has_elements(source) && !gmsh::is_discrete(source)) {
-          kept_[source] =
-              read_entity_mesh(source, NodeCoordinates(field_.topology().closure({source})));
-        }
-      }
-    }
-    is_keeping_ = true;
-  } catch (const Error&) {
-    // Whoever reads the sources in earnest tells what is wrong with them.
-  }
-}
-
-void ModelField::forget_kept_sources() {
-  kept_.clear();
-  is_keeping_ = false;
-}
-
 std::size_t ModelField::add(const std::string& text) {
   return add(parse_size_function(text, field_.topology()));
 }
@@ -220,169 +180,6 @@ void ModelField::create_defaults(std::vector<Entity> attachments, double growth_
   }
 }
 
-std::vector<FacetedSource> ModelField::read_meshed(std::size_t function,
-                                                   const NodeCoordinates& nodes) const {
-  std::vector<FacetedSource> result;
-  for (const Entity& source : field_.functions()[function].sources) {
-    if (source.dim != 1 && source.dim != 2) {
-      continue;
-    }
-    if (gmsh::has_elements(source)) {
-      result.push_back(read_entity_mesh(source, nodes));
-    } else if (const auto kept = kept_.find(source); kept != kept_.end()) {
-      result.push_back(kept->second);
-    }
-  }
-  return result;
-}
-
-void ModelField::set_sources(std::size_t function, const std::vector<FacetedSource>& sources) {
-  const DroppedFacets dropped = field_.set_sources(function, sources, size_factor_);
-  if (dropped.zero_size + dropped.not_finite > 0) {
-    gmsh::log(field_.function_name(function) + ": " +
-                  grouped_digits(dropped.zero_size + dropped.not_finite) +
-                  " elements of its sources have no size or no finite coordinates and are left "
-                  "out: check the mesh of " +
-                  entity_names(field_.functions()[function].sources) + ".",
-              "warning");
-  }
-}
-
-void ModelField::read_sources(const std::vector<std::size_t>& functions) {
-  if (functions.empty()) {
-    return;
-  }
-  size_factor_ = gmsh::option("Mesh.MeshSizeFactor");
-  const NodeCoordinates nodes;
-  SourceFacets facets(field_.topology(), nodes);
-  MeshFingerprints fingerprints;
-  for (const std::size_t index : functions) {
-    read_as_[index].clear();
-    for (const Entity& entity : watched(index)) {
-      read_as_[index][entity] = fingerprints.of(entity);
-    }
-    switch (field_.functions()[index].kind) {
-      case Kind::mesh:
-        set_sources(index, read_meshed(index, nodes));
-        break;
-      case Kind::fixed:
-        set_sources(index, read_fixed(index, nodes));
-        break;
-      case Kind::curvature:
-        read_curvature(index, facets);
-        break;
-      case Kind::proximity:
-        read_proximity(index, facets);
-        break;
-    }
-  }
-}
-
-std::set<Entity> ModelField::watched(std::size_t function) const {
-  const SizeFunction& definition = field_.functions()[function];
-  const Topology& topology = field_.topology();
-  std::vector<Entity> made_from = definition.sources;
-  if (definition.kind == Kind::curvature) {
-    const std::set<Entity> sources = curvature_sources(definition, topology);
-    made_from.assign(sources.begin(), sources.end());
-  } else if (definition.kind == Kind::proximity) {
-    made_from.clear();
-    for (const GapRegion& gaps : gap_regions(definition, topology)) {
-      made_from.push_back(gaps.region);
-    }
-  }
-  const int highest_read = definition.kind == Kind::proximity ? highest(made_from) - 1 : 2;
-  std::set<Entity> result;
-  for (const Entity& entity : topology.closure(made_from)) {
-    if (entity.dim >= 1 && entity.dim <= highest_read) {
-      result.insert(entity);
-    }
-  }
-  return result;
-}
-
-std::vector<std::size_t> ModelField::unread_functions() const {
-  std::vector<std::size_t> unread;
-  MeshFingerprints fingerprints;
-  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
-    const auto read_as = read_as_.find(i);
-    const bool is_mesh = field_.functions()[i].kind == Kind::mesh;
-    // Other kinds do without a mesh: one that came later is no reason to read them again.
-    if (read_as == read_as_.end() ||
-        std::any_of(read_as->second.begin(), read_as->second.end(), [&](const auto& read) {
-          return (is_mesh || read.second != 0) && fingerprints.of(read.first) != read.second;
-        })) {
-      unread.push_back(i);
-    }
-  }
-  return unread;
-}
-
-std::vector<FacetedSource> ModelField::read_fixed(std::size_t function,
-                                                  const NodeCoordinates& nodes) const {
-  const SizeFunction& definition = field_.functions()[function];
-  const Topology& topology = field_.topology();
-  std::vector<FacetedSource> sources;
-  for (const Entity& source : definition.sources) {
-    // A volume stands for its faces, and for what is embedded in it.
-    for (const Entity& part :
-         source.dim == 3 ? topology.lower(source) : std::vector<Entity>{source}) {
-      sources.push_back(part.dim > 0 && gmsh::has_elements(part)
-                            ? read_entity_mesh(part, nodes)
-                            : sample_geometry(part, topology, definition.start_size));
-    }
-  }
-  return sources;
-}
-
-void ModelField::read_curvature(std::size_t function, SourceFacets& facets) {
-  const SizeFunction& definition = field_.functions()[function];
-  std::vector<FacetedSource> sources;
-  for (const Entity& source : curvature_sources(definition, field_.topology())) {
-    sources.push_back(facets.with_curvature(source, definition));
-  }
-  set_sources(function, sources);
-}
-
-void ModelField::read_proximity(std::size_t function, SourceFacets& facets) {
-  std::vector<WalledRegion> regions;
-  for (GapRegion& gaps : gap_regions(field_.functions()[function], field_.topology())) {
-    std::vector<Wall> walls = facets.walls(gaps.region);
-    regions.push_back({std::move(gaps), std::move(walls)});
-  }
-  field_.set_regions(function, regions);
-}
-
-std::vector<Entity> ModelField::unmeshed_sources(std::size_t function) const {
-  std::vector<Entity> unmeshed;
-  if (field_.functions()[function].kind == Kind::mesh) {
-    for (const Entity& source : field_.functions()[function].sources) {
-      if (!gmsh::has_elements(source) && kept_.count(source) == 0) {
-        unmeshed.push_back(source);
-      }
-    }
-  }
-  return unmeshed;
-}
-
-void ModelField::report_unmeshed(std::size_t function) {
-  const std::vector<Entity> unmeshed = unmeshed_sources(function);
-  if (unmeshed.empty()) {
-    return;
-  }
-  const std::string sentence = field_.function_name(function) + ": " + entity_names(unmeshed) +
-                               (unmeshed.size() == 1 ? " has no mesh" : " have no mesh") +
-                               (field_.is_effective(function) ? ", so only its other sources act"
-                                                              : ", so the function has no effect") +
-                               ": mesh the source before what grows from it.";
-  if (strict_) {
-    throw Error(sentence);
-  }
-  if (reported_.insert(function).second) {
-    gmsh::log(sentence, "warning");
-  }
-}
-
 void ModelField::check_model() const {
   std::vector<Entity> now = gmsh::entities();
   now.erase(std::remove_if(now.begin(), now.end(),
@@ -423,35 +220,6 @@ void ModelField::read_all(bool wait_for_meshes) {
     }
   }
   field_.build({}, wait_for_meshes ? sizes_per_tetrahedron() : 0.0);
-}
-
-void ModelField::expect_late_sources(bool wait_for_meshes) {
-  late_.clear();
-  if (!wait_for_meshes) {
-    return;
-  }
-  std::optional<NodeCoordinates> nodes;
-  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
-    const SizeFunction& function = field_.functions()[i];
-    const int before = highest(function.attachments);
-    if (function.kind != Kind::mesh ||
-        std::none_of(function.sources.begin(), function.sources.end(),
-                     [before](const Entity& source) { return source.dim < before; })) {
-      continue;
-    }
-    if (!nodes) {
-      nodes.emplace();
-    }
-    const std::vector<Entity> unmeshed = unmeshed_sources(i);
-    const auto was_read = read_as_.find(i);
-    LateSources& late = late_[i];
-    late.before = read_meshed(i, *nodes);
-    for (const Entity& source : unmeshed) {
-      const bool is_lost = was_read != read_as_.end() && was_read->second.at(source) != 0;
-      late.has_lost |= is_lost;
-      late.waits_for_meshes |= !strict_ && !is_lost && source.dim < before;
-    }
-  }
 }
 
 void ModelField::read_if_needed() {
@@ -498,159 +266,6 @@ double ModelField::sizes_per_tetrahedron() {
   }
 }
 
-void ModelField::register_callback() {
-  if (!file_.empty()) {
-    model_ = gmsh::current_model();
-    check_acted_on();
-  }
-  const CurrentModel current(model_);
-  SizeCallback::check_free_for(model_);
-  if (file_.empty()) {
-    forget_kept_sources();
-    read_all(true);
-    set_reader();
-  }
-  adapt_to_meshers();
-  ready_for_calls_ = true;
-  callback_.reset();
-  callback_ = std::make_unique<SizeCallback>(answers_, model_);
-}
-
-void ModelField::check_acted_on() const {
-  gmsh::require_gmsh();
-  const std::vector<Entity> in_model = gmsh::entities();
-  for (const Entity& entity : field_.topology().entities()) {
-    if (field_.acts_on(entity) &&
-        std::find(in_model.begin(), in_model.end(), entity) == in_model.end()) {
-      throw Error("The size field of " + file_ + " acts on " + entity_name(entity) +
-                  ", which is not in the model \"" + model_ +
-                  "\": open the model it was made for.");
-    }
-  }
-}
-
-void ModelField::set_reader() {
-  answers_.set_reader([this](int dim) { read_late_sources(dim); },
-                      [](const Entity& curve) { return gmsh::has_elements(curve); });
-}
-
-void ModelField::unregister_callback() {
-  callback_.reset();
-  answers_.set_reader(nullptr, nullptr);
-  ready_for_calls_ = false;
-}
-
-std::vector<std::size_t> ModelField::unread_within_run() const {
-  std::vector<std::size_t> unread;
-  MeshFingerprints fingerprints;
-  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
-    const auto read_as = read_as_.find(i);
-    bool is_unread = read_as == read_as_.end();
-    bool is_lost = false;
-    for (const auto& [entity, before] :
-         is_unread ? std::map<Entity, std::uint64_t>() : read_as->second) {
-      const std::uint64_t now = fingerprints.of(entity);
-      const bool counts = before != 0 || field_.functions()[i].kind == Kind::mesh;
-      is_unread |= counts && now != 0 && now != before;
-      is_lost |= counts && now == 0 && before != 0;
-    }
-    if (is_unread && !is_lost) {
-      unread.push_back(i);
-    }
-  }
-  return unread;
-}
-
-void ModelField::make_ready_for_calls() {
-  if (!file_.empty()) {
-    model_ = gmsh::current_model();
-    check_acted_on();
-    adapt_to_meshers();
-    return;
-  }
-  check_model();
-  const std::vector<std::size_t> unread = unread_within_run();
-  read_sources(unread);
-  expect_late_sources(true);
-  forget_kept_sources();
-  for (const std::size_t function : unread) {
-    const auto late = late_.find(function);
-    if (late == late_.end() || !late->second.waits_for_meshes) {
-      reported_.erase(function);
-      report_unmeshed(function);
-    }
-  }
-  field_.build({}, sizes_per_tetrahedron());
-  adapt_to_meshers();
-  set_reader();
-}
-
-void ModelField::try_to_make_ready_for_calls() {
-  const std::lock_guard<std::mutex> lock(calls_mutex_);
-  if (ready_for_calls_) {
-    return;
-  }
-  std::string problem;
-  try {
-    make_ready_for_calls();
-  } catch (const std::exception& error) {
-    problem = error.what();
-  }
-  ready_for_calls_ = true;
-  if (!problem.empty()) {
-    gmsh::log("The size field cannot answer: " + problem, "warning");
-  }
-}
-
-double ModelField::answer_call(int dim, int tag, double x, double y, double z,
-                               double proposed) noexcept {
-  try {
-    if (file_.empty() && gmsh::current_model() != model_) {
-      return proposed;
-    }
-    if (!ready_for_calls_ && !generating_) {
-      try_to_make_ready_for_calls();
-    }
-  } catch (...) {
-    if (file_.empty()) {  // a saved field can do without Gmsh
-      return proposed;
-    }
-  }
-  return answers_.answer(dim, tag, x, y, z, proposed);
-}
-
-void ModelField::read_late_sources(int dim) {
-  MeshFingerprints fingerprints;
-  for (const auto& [function, late] : late_) {
-    std::vector<FacetedSource> sources;
-    bool is_complete = true;
-    for (const Entity& source : field_.functions()[function].sources) {
-      const auto before =
-          std::find_if(late.before.begin(), late.before.end(),
-                       [&source](const FacetedSource& one) { return one.entity == source; });
-      // One of this dimension may be half meshed now; one that Gmsh took the mesh from before its
-      // turn is as it was.
-      const std::uint64_t now = source.dim < dim ? fingerprints.of(source) : 0;
-      if (now != 0 && now != read_as_.at(function).at(source)) {
-        sources.push_back(
-            read_entity_mesh(source, NodeCoordinates(field_.topology().closure({source}))));
-      } else if (before != late.before.end()) {
-        sources.push_back(*before);
-      } else {
-        is_complete = false;
-      }
-    }
-    if (late.has_lost && !is_complete) {
-      continue;
-    }
-    set_sources(function, sources);
-    if (late.waits_for_meshes && dim > highest(field_.functions()[function].sources)) {
-      report_unmeshed(function);
-    }
-  }
-  field_.build_trees();
-}
-
 void ModelField::adapt_to_meshers() {
   const auto algorithm_2d = static_cast<int>(gmsh::option("Mesh.Algorithm"));
   const auto algorithm_3d = static_cast<int>(gmsh::option("Mesh.Algorithm3D"));
@@ -660,8 +275,9 @@ void ModelField::adapt_to_meshers() {
     answers_.calibrate(std::nullopt);
   }
   const auto attached_dim = [this](int dim) {
-    return std::any_of(field_.functions().begin(), field_.functions().end(),
-                       [dim](const SizeFunction& f) { return highest(f.attachments) >= dim; });
+    return std::any_of(
+        field_.functions().begin(), field_.functions().end(),
+        [dim](const SizeFunction& f) { return highest_dimension(f.attachments) >= dim; });
   };
   if (algorithm_2d == 7 && attached_dim(1)) {
     gmsh::log(

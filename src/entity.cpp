@@ -4,6 +4,10 @@
 
 namespace meshgrow {
 
+int highest_dimension(const std::vector<Entity>& entities) {
+  return std::max_element(entities.begin(), entities.end())->dim;
+}
+
 std::string dimension_name(int dim) {
   static const char* const names[] = {"Point", "Curve", "Surface", "Volume"};
   if (dim < 0 || dim > 3) {

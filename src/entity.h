@@ -22,6 +22,9 @@ struct Entity {
   }
 };
 
+/// Of entities that are at least one.
+int highest_dimension(const std::vector<Entity>& entities);
+
 /// "Point", "Curve", "Surface" or "Volume"; "Entity of dimension 7" for anything else.
 std::string dimension_name(int dim);
 
