@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "field_file.h"
-#include "graded_sphere.h"
 #include "meshgrow.h"
 #include "random_facets.h"
+#include "sphere_field.h"
 
 using namespace meshgrow;
 
@@ -30,31 +30,13 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-SizeField sphere_field(std::size_t facets) {
-  Topology topology;
-  topology.add_entity({2, 1}, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
-  topology.add_entity({3, 1}, {{2, 1}}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
-  SizeField field(topology);
-  SizeFunction function;
-  function.sources = {{2, 1}};
-  function.attachments = {{3, 1}};
-  function.size_limit = 1.0;
-  field.add(function);
-  FacetedSource source;
-  source.entity = {2, 1};
-  source.triangles = test::graded_sphere(facets, 20.0);
-  field.set_sources(0, {source});
-  field.build_grids();
-  return field;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::size_t facets = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 200000;
   const std::size_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1000000;
   const std::string path = (std::filesystem::temp_directory_path() / "c_api_overhead.mgf").string();
-  save_field(sphere_field(facets), path);
+  save_field(test::sphere_field(facets), path);
   const SizeField field = load_field(path);
   meshgrow_field* c_field = meshgrow_field_load(path.c_str());
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "field_file.h"
-#include "graded_sphere.h"
 #include "random_facets.h"
+#include "sphere_field.h"
 
 using namespace meshgrow;
 
@@ -30,20 +30,7 @@ double seconds_for(const SizeField& field, const std::vector<Vec3>& points,
 
 int main(int argc, char** argv) {
   const std::size_t facets = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
-  Topology topology;
-  topology.add_entity({2, 1}, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
-  topology.add_entity({3, 1}, {{2, 1}}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
-  SizeField field(topology);
-  SizeFunction function;
-  function.sources = {{2, 1}};
-  function.attachments = {{3, 1}};
-  function.size_limit = 1.0;
-  field.add(function);
-  FacetedSource source;
-  source.entity = {2, 1};
-  source.triangles = test::graded_sphere(facets, 20.0);
-  field.set_sources(0, {source});
-  field.build_grids();
+  const SizeField field = test::sphere_field(facets);
 
   const std::string path =
       (std::filesystem::temp_directory_path() / "field_file_times.mgf").string();
