@@ -26,6 +26,7 @@ struct ReportArguments {
   std::string entities;
   bool json = false;
   std::vector<std::string> fail_if;
+  std::string sizes;  ///< a saved field, instead of size functions
   FieldArguments field;
 };
 
@@ -42,14 +43,29 @@ std::vector<int> dim_tags(const std::string& entities) {
   return result;
 }
 
+/// What edge lengths are compared with; null if there is nothing.
+FieldPointer sizes_asked_for(const ReportArguments& arguments,
+                             const std::vector<std::string>& texts) {
+  FieldPointer field;
+  if (!arguments.sizes.empty()) {
+    if (!texts.empty() || arguments.field.defaults_limit != 0.0) {
+      throw UsageError("A report is against the saved field " + arguments.sizes +
+                       " or against size functions: give one of them.");
+    }
+    field.reset(meshgrow_field_load(arguments.sizes.c_str()));
+    check(field ? 0 : 1);
+  } else if (has_size_functions(arguments.field, texts)) {
+    field = make_field(arguments.field, texts);
+  }
+  return field;
+}
+
 /// The report of one file, as a row of the table; `acceptable` becomes false if a condition holds.
 nlohmann::json report_row(const std::string& file, const ReportArguments& arguments,
                           const std::vector<std::string>& texts,
                           const std::vector<FailCondition>& conditions, bool& acceptable) {
   open_model(file);
-  const FieldPointer field = has_size_functions(arguments.field, texts)
-                                 ? make_field(arguments.field, texts)
-                                 : FieldPointer();
+  const FieldPointer field = sizes_asked_for(arguments, texts);
   ReportedPart part{arguments.dim, {}, field.get()};
   if (!arguments.entities.empty()) {
     part.dim_tags = dim_tags(arguments.entities);
@@ -98,6 +114,8 @@ void add_report_command(CLI::App& program) {
       ->check(CLI::Range(2, 3));
   command.add_option("--entities", arguments->entities, "Only these, for example 'Volume{2,3}'");
   command.add_flag("--json", arguments->json, "JSON instead of a table");
+  command.add_option("--sizes", arguments->sizes,
+                     "Against the sizes of a saved field (.mgf), instead of size functions");
   add_fail_option(command, arguments->fail_if);
   add_field_options(command, arguments->field);
   command.footer(std::string("Example:\n"

@@ -93,6 +93,20 @@ def test_report_compares_meshes_and_measures_sizes_from_the_file_alone(box, tmp_
     assert len(table.splitlines()) == 3
 
 
+def test_report_against_a_saved_field_is_that_against_its_functions(box, tmp_path):
+    mesh(box, "-3", "-o", tmp_path / "a.msh", "--size-function", FIXED)
+    saved = tmp_path / "sizes.mgf"
+    assert run("field", box, "-o", saved, "--evaluator", "exact", "--size-function",
+               FIXED).returncode == 0
+    against = [json.loads(run("report", tmp_path / "a.msh", "--json", *options).stdout)
+               for options in (["--sizes", saved], [])]
+    assert 0.8 < against[0][0]["report"]["length_median"] < 1.6
+    assert against[1][0]["report"]["length_median"] is None
+    assert_refused(run("report", tmp_path / "a.msh", "--sizes", saved, "--size-function", FIXED),
+                   "one of them")
+    assert_refused(run("report", tmp_path / "a.msh", "--sizes", box), "no size field")
+
+
 def test_two_dimensional_report(box, tmp_path):
     mesh(box, "-2", "-o", tmp_path / "a.msh")
     result = run("report", tmp_path / "a.msh", "--dim", 2, "--json")
