@@ -38,6 +38,9 @@ SizeFunction common(Kind kind, std::vector<Entity> sources, std::vector<Entity> 
 
 void set_option(meshgrow::ModelField& model_field, const std::string& name, double value) {
   meshgrow::FieldOptions& options = model_field.field().options();
+  if (model_field.is_from_file() && (name == "tolerance" || name == "evaluator")) {
+    throw Error("A saved size field keeps its " + name + ": set it before saving.");
+  }
   if (name == "tolerance") {
     meshgrow::check_tolerance(value);
     options.tolerance = value;

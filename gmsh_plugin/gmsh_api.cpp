@@ -224,6 +224,12 @@ std::string onelab_string(const std::string& name) {
 
 void remove_onelab(const std::string& name) { library().call("gmshOnelabClear", name.c_str()); }
 
+void set_onelab_string(const std::string& name, const std::string& value) {
+  const char* values[] = {value.c_str()};
+  library().call("gmshOnelabSetString", name.c_str(), static_cast<const char* const*>(values),
+                 std::size_t{1});
+}
+
 std::string current_model() {
   char* name = nullptr;
   library().call("gmshModelGetCurrent", &name);

@@ -49,6 +49,9 @@ std::vector<std::string> onelab_names(const std::string& expression);
 std::string onelab_string(const std::string& name);
 void remove_onelab(const std::string& name);
 
+/// Sets a string parameter of ONELAB, which a .geo reads in place of its own value.
+void set_onelab_string(const std::string& name, const std::string& value);
+
 std::string current_model();
 void set_current_model(const std::string& name);
 std::vector<std::string> models();

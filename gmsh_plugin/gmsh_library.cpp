@@ -56,7 +56,8 @@ GmshLibrary::GmshLibrary() {
       return;
     }
   }
-  if (const char* named = std::getenv("MESHGROW_GMSH_LIB")) {
+  const char* named = std::getenv("MESHGROW_GMSH_LIB");
+  if (named != nullptr && *named != '\0') {
     path_ = named;
     handle_ = dlopen(named, RTLD_LAZY | RTLD_LOCAL);
     if (handle_ == nullptr) {

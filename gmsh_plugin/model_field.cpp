@@ -233,6 +233,12 @@ void ModelField::read_if_needed() {
   }
   // Within a run of Gmsh, which has thrown meshes away, a user's own callback may ask.
   const bool may_run = is_registered() || ready_for_calls_;
+  if (!may_run) {
+    check_model();
+    for (std::size_t i = 0; strict_ && i < field_.functions().size(); ++i) {
+      report_unmeshed(i);
+    }
+  }
   const std::vector<std::size_t> unread = may_run ? unread_within_run() : unread_functions();
   if (unread.empty()) {
     return;

@@ -85,7 +85,7 @@ std::string facet_text(const json& facet) {
 
 std::string reason(const json& probe) {
   const std::string function =
-      probe.at("function").is_null() ? "" : probe.at("function").at("name").get<std::string>();
+      probe.at("function").is_null() ? "" : probe.at("function").at("title").get<std::string>();
   const std::string rule = probe.at("rule");
   if (rule == "facet") {
     const json& facet = probe.at("facet");
@@ -144,7 +144,8 @@ json probe_json(const SizeField& field, const Probe& probe, const Vec3& p, bool 
   if (probe.rule != Rule::nothing) {
     const SizeFunction& function = field.functions()[probe.function];
     result["function"] = {{"index", probe.function},
-                          {"name", field.function_name(probe.function)},
+                          {"name", function.name},
+                          {"title", field.function_name(probe.function)},
                           {"kind", kind_name(function.kind)},
                           {"text", size_function_text(function)}};
   }
@@ -165,7 +166,7 @@ std::string probe_text(const json& probe) {
               ? ", no grid)"
               : ", from the grid " + shortest(probe.at("interpolated_size").get<double>()) + ")";
   return text + "\n  " + reason(probe) + "\n  " +
-         probe.at("function").at("name").get<std::string>() + ": " +
+         probe.at("function").at("title").get<std::string>() + ": " +
          probe.at("function").at("text").get<std::string>() + "\n";
 }
 

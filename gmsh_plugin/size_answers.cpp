@@ -134,8 +134,22 @@ double SizeAnswers::answer(int dim, int tag, double x, double y, double z,
     follow_run(entity);
     const std::shared_lock<std::shared_mutex> lock(mutex_);
     return combined(entity, x, y, z, proposed);
+  } catch (const std::exception& error) {
+    tell_problem(error.what());
+    return proposed;
   } catch (...) {
     return proposed;
+  }
+}
+
+void SizeAnswers::tell_problem(const char* sentence) const noexcept {
+  if (has_told_problem_.exchange(true)) {
+    return;
+  }
+  try {
+    gmsh::log(std::string("The size field cannot answer: ") + sentence, "warning");
+  } catch (...) {
+    // Nobody is left to tell.
   }
 }
 

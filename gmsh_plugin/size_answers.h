@@ -34,7 +34,8 @@ class SizeAnswers {
 
   /// The size on the entity (dim, tag) at (x, y, z), where Gmsh proposes `proposed`: the smaller of
   /// the proposal, the field's and the user's size; the proposal itself for anything unusual (an
-  /// unknown dimension, a point that is not finite).
+  /// unknown dimension, a point that is not finite), or if a part of a saved field is damaged, of
+  /// which Gmsh's log warns.
   double answer(int dim, int tag, double x, double y, double z, double proposed) const noexcept;
 
   /// The user's own sizes beside the field; none if empty.
@@ -77,6 +78,8 @@ class SizeAnswers {
 
  private:
   bool is_asking_user() const;
+  /// The first one, as a warning in Gmsh's log.
+  void tell_problem(const char* sentence) const noexcept;
   double calibrated(int dim, const Vec3& p, double size) const;
   double combined(const Entity& entity, double x, double y, double z, double proposed) const;
   double scaled(const Scale& scale, const Entity& entity, double x, double y, double z,
@@ -92,6 +95,7 @@ class SizeAnswers {
   double unit_ = 1.0;
   std::function<void(int)> reader_;
   std::function<bool(const Entity&)> has_mesh_;
+  mutable std::atomic<bool> has_told_problem_{false};
   mutable std::atomic<int> highest_dim_{0};
   mutable std::shared_mutex mutex_;
 };

@@ -341,8 +341,8 @@ Header read_header(const std::string& path, const MappedFile& file) {
     throw Error(path + " is damaged in its header: save the field again.");
   }
   if (header.file_bytes != file.size()) {
-    throw Error(path + " is truncated (" + grouped_digits(file.size()) + " of " +
-                grouped_digits(header.file_bytes) +
+    throw Error(path + (file.size() < header.file_bytes ? " is truncated (" : " is too long (") +
+                grouped_digits(file.size()) + " of " + grouped_digits(header.file_bytes) +
                 " bytes): copy it again, or save the field again.");
   }
   if (header.directory_begin > file.size() ||

@@ -23,9 +23,10 @@ std::string SizeField::function_name(std::size_t function) const {
 }
 
 void SizeField::check_name(const std::string& name, std::size_t but_for) const {
-  if (is_number_name(name) || name.find('"') != std::string::npos) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == '"'; };
+  if (name.empty() || is_number_name(name) || std::any_of(name.begin(), name.end(), is_control)) {
     throw Error("A size function cannot have the name '" + name +
-                "': give one that is not a number and has no quotes.");
+                "': give one on one line that is not a number and has no quotes.");
   }
   for (std::size_t i = 0; i < functions_.size(); ++i) {
     if (i != but_for && functions_[i].name == name) {

@@ -80,6 +80,17 @@ std::vector<std::string> size_function_texts(const FieldArguments& arguments) {
   return result;
 }
 
+void check_no_field_options(const std::string& path, const FieldArguments& arguments) {
+  const FieldArguments standard;
+  if (!arguments.size_functions.empty() || !arguments.file.empty() ||
+      arguments.defaults_limit != 0.0 || arguments.tolerance != standard.tolerance ||
+      arguments.evaluator != standard.evaluator || arguments.strict || arguments.calibrate) {
+    throw UsageError(path +
+                     " is a saved size field with functions and options of its own: leave out "
+                     "--size-function, --defaults, --tolerance, --evaluator and the like.");
+  }
+}
+
 bool has_size_functions(const FieldArguments& arguments, const std::vector<std::string>& texts) {
   return !texts.empty() || arguments.defaults_limit != 0.0 || !onelab_functions().empty();
 }

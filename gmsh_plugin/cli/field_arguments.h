@@ -27,6 +27,10 @@ void add_field_options(CLI::App& command, FieldArguments& arguments);
 /// UsageError if the file cannot be read.
 std::vector<std::string> size_function_texts(const FieldArguments& arguments);
 
+/// For a saved field (.mgf): throws UsageError if the arguments tell anything that only a field of
+/// a model can heed.
+void check_no_field_options(const std::string& path, const FieldArguments& arguments);
+
 /// Whether there is any size function, be it in the current model, among the texts or by default.
 bool has_size_functions(const FieldArguments& arguments, const std::vector<std::string>& texts);
 

@@ -116,9 +116,8 @@ void tell_written(meshgrow_field* field, const std::string& output, std::size_t 
 void write_field(const FieldCommandArguments& arguments) {
   const std::vector<std::string> texts = size_function_texts(arguments.field);
   const bool from_file = is_field_file(arguments.model);
-  if (from_file && (!texts.empty() || arguments.field.defaults_limit != 0.0)) {
-    throw UsageError(arguments.model +
-                     " is a size field with functions of its own: give it without size functions.");
+  if (from_file) {
+    check_no_field_options(arguments.model, arguments.field);
   }
   if (!is_saved_field(arguments.output)) {
     try {

@@ -26,6 +26,12 @@ GmshSession::GmshSession(const std::vector<std::string>& options) {
     finalize_quietly();
     throw UsageError("Gmsh refuses its options (" + problem + "): correct them.");
   }
+  // What gmsh's own program does with it since 4.9, and the library does not.
+  for (std::size_t i = 0; i + 2 < options.size() && !gmsh::is_4_8(); ++i) {
+    if (options[i] == "-setstring") {
+      gmsh::set_onelab_string(options[i + 1], options[i + 2]);
+    }
+  }
 }
 
 GmshSession::~GmshSession() { finalize_quietly(); }

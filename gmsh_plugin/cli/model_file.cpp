@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "field_file.h"
 #include "gmsh_api.h"
 #include "onelab_functions.h"
 #include "usage_error.h"
@@ -20,6 +21,11 @@ void check_readable(const std::string& file) {
   }
   if (std::filesystem::is_directory(file)) {
     throw UsageError(file + " is a directory: give a file that Gmsh can open.");
+  }
+  if (is_field_file(file)) {
+    throw UsageError(file +
+                     " is a saved size field: give a model; report takes it as --sizes, and field, "
+                     "probe and serve as it is.");
   }
 }
 

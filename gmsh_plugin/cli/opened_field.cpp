@@ -11,17 +11,16 @@
 namespace meshgrow::cli {
 
 OpenedField::OpenedField(const std::string& path, const FieldArguments& arguments, int mesh_dim) {
-  const std::vector<std::string> texts = size_function_texts(arguments);
   if (is_field_file(path)) {
-    if (!texts.empty() || arguments.defaults_limit != 0.0) {
-      throw UsageError(path +
-                       " is a size field with functions of its own: give it without size "
-                       "functions.");
+    check_no_field_options(path, arguments);
+    if (mesh_dim > 0) {
+      throw UsageError(path + " is a saved size field and no model: leave out -1, -2 and -3.");
     }
     field_.reset(meshgrow_field_load(path.c_str()));
     check(field_ ? 0 : 1);
     return;
   }
+  const std::vector<std::string> texts = size_function_texts(arguments);
   session_.emplace();
   open_model(path);
   if (!has_size_functions(arguments, texts)) {

@@ -48,10 +48,7 @@ FieldPointer sizes_asked_for(const ReportArguments& arguments,
                              const std::vector<std::string>& texts) {
   FieldPointer field;
   if (!arguments.sizes.empty()) {
-    if (!texts.empty() || arguments.field.defaults_limit != 0.0) {
-      throw UsageError("A report is against the saved field " + arguments.sizes +
-                       " or against size functions: give one of them.");
-    }
+    check_no_field_options(arguments.sizes, arguments.field);
     field.reset(meshgrow_field_load(arguments.sizes.c_str()));
     check(field ? 0 : 1);
   } else if (has_size_functions(arguments.field, texts)) {

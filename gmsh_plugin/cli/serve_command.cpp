@@ -95,7 +95,14 @@ ExitCode serve(const ServeArguments& arguments) {
   AskerProcessor processor;
   const SizesAt answer = [&](const Vec3* points, std::size_t count, double* to) {
     processor.follow();
-    sizes(points, count, to);
+    try {
+      sizes(points, count, to);
+    } catch (const Error& error) {  // a damaged part of a saved field, found when it is touched
+      tell(std::string(error.what()) + " From here on Gmsh gets no sizes from here.");
+      result = work_failed;
+      sizes = no_sizes;
+      sizes(points, count, to);
+    }
   };
   if (serve_sizes(STDIN_FILENO, answers.descriptor(), answer) == ServeEnd::half_request) {
     tell("The input ended within a request: send three doubles for each.");

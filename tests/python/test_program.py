@@ -103,7 +103,7 @@ def test_report_against_a_saved_field_is_that_against_its_functions(box, tmp_pat
     assert 0.8 < against[0][0]["report"]["length_median"] < 1.6
     assert against[1][0]["report"]["length_median"] is None
     assert_refused(run("report", tmp_path / "a.msh", "--sizes", saved, "--size-function", FIXED),
-                   "one of them")
+                   "saved size field")
     assert_refused(run("report", tmp_path / "a.msh", "--sizes", box), "no size field")
 
 

@@ -1,5 +1,6 @@
 """The sweep on Dask, small: what it returns, and that a crash costs one variant only."""
 
+import importlib.util
 import json
 import os
 import subprocess
@@ -7,7 +8,8 @@ import sys
 
 import pytest
 
-pytest.importorskip("distributed", reason="tests/setup.sh installs it beside the newest Gmsh")
+pytestmark = pytest.mark.skipif(importlib.util.find_spec("distributed") is None,
+                                reason="tests/setup.sh installs it beside the newest Gmsh")
 
 EXAMPLES = os.path.join(os.path.dirname(__file__), "..", "..", "examples")
 RUN = """

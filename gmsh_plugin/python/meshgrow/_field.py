@@ -9,8 +9,8 @@ from typing import Any, Callable, Dict, Optional, Union
 
 import numpy.typing as npt
 
-from ._library import (PROGRESS_LISTENER, STOP_REQUEST, USER_SIZES, DimTag, DimTags, Doubles, check,
-                       dim_tags, doubles, lib, points_array, sizes_array, take_text)
+from ._library import (PROGRESS_LISTENER, STOP_REQUEST, USER_SIZES, DimTag, DimTags, Doubles, c_path,
+                       c_text, check, dim_tags, doubles, lib, points_array, sizes_array, take_text)
 from ._interrupts import interrupts_kept
 from ._plan import Plan
 from ._probe import probe
@@ -46,6 +46,8 @@ class SizeField:
         exception from it stops the work; what was meshed is kept.
     """
 
+    _file: Optional[Union[str, bytes]] = None  # that it was loaded from
+
     def __init__(self, tolerance: float = 0.05, evaluator: str = "auto", strict: bool = False,
                  threads: int = 0, progress: Optional[Callable[[str], Any]] = None,
                  calibrate: bool = False) -> None:
@@ -77,7 +79,7 @@ class SizeField:
         check(failed)
 
     def _set(self, name: str, value: float) -> None:
-        check(lib.meshgrow_field_set_option(self._handle, name.encode(), float(value)))
+        check(lib.meshgrow_field_set_option(self._handle, c_text(name), float(value)))
 
     def add_mesh(self, sources: DimTags, attach: DimTags, growth_rate: float = 1.2,
                  size_limit: Optional[float] = None, quad_size: str = "triangles",
@@ -155,7 +157,7 @@ class SizeField:
         """A size function by its line of text, the same as on the command line:
         ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``. It may hold ``name inner``
         or ``name "inner wall"``. Returns the name."""
-        check(lib.meshgrow_field_add(self._handle, text.encode()))
+        check(lib.meshgrow_field_add(self._handle, c_text(text)))
         return self._name(lib.meshgrow_field_function_count(self._handle) - 1)
 
     def _name(self, index: int) -> str:
@@ -181,20 +183,20 @@ class SizeField:
     def modify(self, name: str, text: str) -> None:
         """Puts another definition, a line of text, in the place of a function. Only what it acts on
         is built anew; a registered field acts as changed at once."""
-        self._check(lib.meshgrow_field_modify(self._handle, name.encode(), text.encode()))
+        self._check(lib.meshgrow_field_modify(self._handle, c_text(name), c_text(text)))
 
     def remove(self, name: str) -> None:
         """Takes a function away."""
-        self._check(lib.meshgrow_field_remove(self._handle, name.encode()))
+        self._check(lib.meshgrow_field_remove(self._handle, c_text(name)))
 
     def rename(self, name: str, new_name: str) -> None:
         """Gives a function another name."""
-        check(lib.meshgrow_field_rename(self._handle, name.encode(), new_name.encode()))
+        check(lib.meshgrow_field_rename(self._handle, c_text(name), c_text(new_name)))
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Saves the field, with grids unless the evaluator is exact, to a file (.mgf) that is
         complete or not there."""
-        self._check(lib.meshgrow_field_save(self._handle, os.fsencode(path)))
+        self._check(lib.meshgrow_field_save(self._handle, c_path(path)))
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> SizeField:
@@ -203,9 +205,17 @@ class SizeField:
         Needs no gmsh unless registered."""
         field = cls.__new__(cls)
         field._raised = Raised()
-        field._handle = lib.meshgrow_field_load(os.fsencode(path))
+        field._handle = lib.meshgrow_field_load(c_path(path))
         check(not field._handle)
+        field._file = os.path.abspath(path)
         return field
+
+    def __reduce__(self) -> Any:
+        """A loaded field travels as the path of its file, so that workers map it by themselves."""
+        if self._file is None:
+            raise TypeError("a size field of a model cannot be copied or sent to another process: "
+                            "save it, and load the file there")
+        return type(self).load, (self._file,)
 
     def generate(self, dim: int = 3, remesh: bool = False) -> None:
         """Meshes up to dimension ``dim`` with Gmsh's own algorithms, sources first.

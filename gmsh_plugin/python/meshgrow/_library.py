@@ -131,6 +131,21 @@ def check(failed: Union[int, bool]) -> None:
         raise_last_error()
 
 
+def c_text(text: str) -> bytes:
+    """A text for the C border, where NUL would end it."""
+    if "\0" in text:
+        raise ValueError("a text has a NUL character: %r" % text)
+    return text.encode()
+
+
+def c_path(path: Union[str, os.PathLike[str]]) -> bytes:
+    """A path for the C border."""
+    encoded = os.fsencode(path)
+    if b"\0" in encoded:
+        raise ValueError("a path has a NUL character: %r" % (path,))
+    return encoded
+
+
 def take_text(text: Optional[int]) -> str:
     """A returned text as str, its memory freed; raises the last error if there is none."""
     if not text:

@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ._library import DimTag, Doubles, check, doubles, lib
+from ._library import DimTag, Doubles, c_path, c_text, check, doubles, lib
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _EVERYWHERE = (-1, 0)
@@ -50,7 +50,7 @@ def add_view(handle: int, name: str, kind: str, entity: Optional[DimTag], plane:
     numbers = None if plane is None else _point_and_normal(plane)
     tag = ctypes.c_int()
     check(lib.meshgrow_field_add_view(
-        handle, name.encode(), kind.encode(), *_dim_tag(entity),
+        handle, c_text(name), c_text(kind), *_dim_tag(entity),
         None if numbers is None else doubles(numbers),
         0 if resolution is None else operator.index(resolution), ctypes.byref(tag)))
     return tag.value
@@ -59,6 +59,6 @@ def add_view(handle: int, name: str, kind: str, entity: Optional[DimTag], plane:
 def write_view(handle: int, path: str, entity: Optional[DimTag]) -> int:
     """See SizeField.write_view."""
     cells = ctypes.c_size_t()
-    check(lib.meshgrow_field_write_view(handle, os.fsencode(path), *_dim_tag(entity),
+    check(lib.meshgrow_field_write_view(handle, c_path(path), *_dim_tag(entity),
                                         ctypes.byref(cells)))
     return cells.value
