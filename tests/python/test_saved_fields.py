@@ -85,7 +85,7 @@ def test_loaded_fields_are_copied_and_sent_by_their_path(saved):
     assert np.array_equal(loaded.size(*model.left, points), expected)
     child = subprocess.run(
         [sys.executable, "-c", "import pickle, sys; field = pickle.load(sys.stdin.buffer); "
-         "print(repr(field.size(%d, %d, [[0.5, 0.5, 0.5]])[0]))" % model.left],
+         "print(repr(float(field.size(%d, %d, [[0.5, 0.5, 0.5]])[0])))" % model.left],
         input=pickle.dumps(loaded), capture_output=True, check=True)
     assert float(child.stdout) == loaded.size(*model.left, [[0.5, 0.5, 0.5]])[0]
 
