@@ -274,13 +274,17 @@ std::vector<Entity> embedded(const Entity& entity) {
 Box bounding_box(const Entity& entity) {
   Vec3 low;
   Vec3 high;
+  const double told = option(verbosity);
+  set_option(verbosity, 0.0);  // or a box that is empty would be an error in the user's log
   try {
     library().call("gmshModelGetBoundingBox", entity.dim, entity.tag, &low.x(), &low.y(), &low.z(),
                    &high.x(), &high.y(), &high.z());
   } catch (const Error&) {
     // A discrete entity without a mesh of its own, as when only some physical groups were saved.
-    return Box();
+    low = Vec3::Constant(1.0);
+    high = Vec3::Zero();
   }
+  set_option(verbosity, told);
   return (low.array() <= high.array()).all() ? Box(low, high) : Box();
 }
 

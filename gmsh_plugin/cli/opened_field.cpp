@@ -4,7 +4,6 @@
 
 #include "c_field.h"
 #include "field_file.h"
-#include "gmsh_api.h"
 #include "model_file.h"
 #include "usage_error.h"
 
@@ -27,11 +26,7 @@ OpenedField::OpenedField(const std::string& path, const FieldArguments& argument
     throw UsageError("No size function is given for " + path +
                      ": give some by --size-function, --size-functions or --defaults.");
   }
-  // Gmsh calls it an error that an entity without a mesh or geometry has no box.
-  const double verbosity = gmsh::option("General.Verbosity");
-  gmsh::set_option("General.Verbosity", 0.0);
   field_ = make_field(arguments, texts);
-  gmsh::set_option("General.Verbosity", verbosity);
   check(meshgrow_field_set_progress(
       field_.get(),
       [](const char* line, void*) {

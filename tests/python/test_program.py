@@ -107,6 +107,14 @@ def test_report_against_a_saved_field_is_that_against_its_functions(box, tmp_pat
     assert_refused(run("report", tmp_path / "a.msh", "--sizes", box), "no size field")
 
 
+def test_report_of_a_mesh_of_some_entities_says_nothing_but_its_table(box, tmp_path):
+    box.write_text(box.read_text().replace("Mesh.SaveAll = 1;", "Mesh.SaveAll = 0;"))
+    mesh(box, "-3", "-o", tmp_path / "a.msh")
+    result = run("report", tmp_path / "a.msh")
+    assert len(result.stdout.splitlines()) == 2, result.stdout
+    assert result.stderr == ""
+
+
 def test_two_dimensional_report(box, tmp_path):
     mesh(box, "-2", "-o", tmp_path / "a.msh")
     result = run("report", tmp_path / "a.msh", "--dim", 2, "--json")
