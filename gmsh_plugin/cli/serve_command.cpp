@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "asker_processor.h"
 #include "entity_text.h"
 #include "error.h"
 #include "opened_field.h"
@@ -92,9 +91,7 @@ ExitCode serve(const ServeArguments& arguments) {
     sizes = no_sizes;
   }
   std::signal(SIGPIPE, SIG_IGN);  // not before: starting, Gmsh 4.15 sets it back
-  AskerProcessor processor;
   const SizesAt answer = [&](const Vec3* points, std::size_t count, double* to) {
-    processor.follow();
     try {
       sizes(points, count, to);
     } catch (const Error& error) {  // a damaged part of a saved field, found when it is touched

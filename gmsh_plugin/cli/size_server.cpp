@@ -1,10 +1,12 @@
 #include "size_server.h"
 
 #include <poll.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -33,7 +35,19 @@ bool is_transient(int descriptor, short event) {
   return errno == EINTR;
 }
 
+/// To be woken takes a process some 40 µs where nothing else runs, and the next request comes
+/// sooner: looks for it for so long before it sleeps. Others may run meanwhile.
+void look_for_input(int input) {
+  constexpr std::chrono::microseconds most(100);
+  const auto start = std::chrono::steady_clock::now();
+  pollfd wanted = {input, POLLIN, 0};
+  while (::poll(&wanted, 1, 0) == 0 && std::chrono::steady_clock::now() - start < most) {
+    ::sched_yield();
+  }
+}
+
 std::size_t read_some(int input, void* buffer, std::size_t size) {
+  look_for_input(input);
   while (true) {
     const ssize_t count = ::read(input, buffer, size);
     if (count >= 0) {
