@@ -214,8 +214,7 @@ void ModelField::read_all(bool wait_for_meshes) {
   reported_.clear();
   expect_late_sources(wait_for_meshes);
   for (const std::size_t function : all) {
-    const auto late = late_.find(function);
-    if (late == late_.end() || !late->second.waits_for_meshes) {
+    if (!waits_for_meshes(function)) {
       report_unmeshed(function);
     }
   }
@@ -239,11 +238,13 @@ void ModelField::read_if_needed() {
       report_unmeshed(i);
     }
   }
-  const std::vector<std::size_t> unread = may_run ? unread_within_run() : unread_functions();
+  const std::vector<std::size_t> unread = unread_functions(may_run);
   if (unread.empty()) {
     return;
   }
-  check_model();
+  if (may_run) {
+    check_model();
+  }
   forget_kept_sources();
   read_sources(unread);
   for (const std::size_t function : unread) {

@@ -144,8 +144,9 @@ class ModelField {
 
   /// The entities whose meshes the function was, or would be, made from.
   std::set<Entity> watched(std::size_t function) const;
-  /// Functions not read yet, or made from meshes that are not as they were read.
-  std::vector<std::size_t> unread_functions() const;
+  /// Functions not read yet, or made from meshes that are not as they were read. Within a run of
+  /// Gmsh, those whose meshes the run has thrown away are left as they were read.
+  std::vector<std::size_t> unread_functions(bool within_run) const;
 
   /// Remembers what a run of Gmsh may change about the sources of mesh size functions.
   /// `wait_for_meshes`: as for read_all.
@@ -161,9 +162,8 @@ class ModelField {
 
   std::vector<Entity> unmeshed_sources(std::size_t function) const;
   void set_reader();
-  /// Functions to be read within a run of Gmsh: as unread_functions, but those whose meshes the run
-  /// has thrown away are left as they were read.
-  std::vector<std::size_t> unread_within_run() const;
+  /// Whether a run of Gmsh will mesh the function's sources in time.
+  bool waits_for_meshes(std::size_t function) const;
   void make_ready_for_calls();
   void try_to_make_ready_for_calls();
   /// Keeps the meshes of the sources of this function and those after it.

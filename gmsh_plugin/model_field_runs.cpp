@@ -54,25 +54,9 @@ void ModelField::unregister_callback() {
   ready_for_calls_ = false;
 }
 
-std::vector<std::size_t> ModelField::unread_within_run() const {
-  std::vector<std::size_t> unread;
-  MeshFingerprints fingerprints;
-  for (std::size_t i = 0; i < field_.functions().size(); ++i) {
-    const auto read_as = read_as_.find(i);
-    bool is_unread = read_as == read_as_.end();
-    bool is_lost = false;
-    for (const auto& [entity, before] :
-         is_unread ? std::map<Entity, std::uint64_t>() : read_as->second) {
-      const std::uint64_t now = fingerprints.of(entity);
-      const bool counts = before != 0 || field_.functions()[i].kind == Kind::mesh;
-      is_unread |= counts && now != 0 && now != before;
-      is_lost |= counts && now == 0 && before != 0;
-    }
-    if (is_unread && !is_lost) {
-      unread.push_back(i);
-    }
-  }
-  return unread;
+bool ModelField::waits_for_meshes(std::size_t function) const {
+  const auto late = late_.find(function);
+  return late != late_.end() && late->second.waits_for_meshes;
 }
 
 void ModelField::make_ready_for_calls() {
@@ -83,13 +67,12 @@ void ModelField::make_ready_for_calls() {
     return;
   }
   check_model();
-  const std::vector<std::size_t> unread = unread_within_run();
+  const std::vector<std::size_t> unread = unread_functions(true);
   read_sources(unread);
   expect_late_sources(true);
   forget_kept_sources();
   for (const std::size_t function : unread) {
-    const auto late = late_.find(function);
-    if (late == late_.end() || !late->second.waits_for_meshes) {
+    if (!waits_for_meshes(function)) {
       reported_.erase(function);
       report_unmeshed(function);
     }

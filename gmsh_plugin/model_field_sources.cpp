@@ -127,17 +127,26 @@ std::set<Entity> ModelField::watched(std::size_t function) const {
   return result;
 }
 
-std::vector<std::size_t> ModelField::unread_functions() const {
+std::vector<std::size_t> ModelField::unread_functions(bool within_run) const {
   std::vector<std::size_t> unread;
   MeshFingerprints fingerprints;
   for (std::size_t i = 0; i < field_.functions().size(); ++i) {
     const auto read_as = read_as_.find(i);
-    const bool is_mesh = field_.functions()[i].kind == Kind::mesh;
-    // Other kinds do without a mesh: one that came later is no reason to read them again.
-    if (read_as == read_as_.end() ||
-        std::any_of(read_as->second.begin(), read_as->second.end(), [&](const auto& read) {
-          return (is_mesh || read.second != 0) && fingerprints.of(read.first) != read.second;
-        })) {
+    if (read_as == read_as_.end()) {
+      unread.push_back(i);
+      continue;
+    }
+    bool is_changed = false;
+    bool is_lost = false;
+    for (const auto& [entity, before] : read_as->second) {
+      // Other kinds do without a mesh: one that came later is no reason to read them again.
+      if (before == 0 && field_.functions()[i].kind != Kind::mesh) {
+        continue;
+      }
+      const std::uint64_t now = fingerprints.of(entity);
+      (within_run && now == 0 ? is_lost : is_changed) |= now != before;
+    }
+    if (is_changed && !is_lost) {
       unread.push_back(i);
     }
   }
