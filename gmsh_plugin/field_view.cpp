@@ -4,7 +4,6 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "gmsh_state.h"
 #include "gmsh_views.h"
 #include "plane_cut.h"
+#include "whole_file.h"
 
 namespace meshgrow {
 
@@ -275,26 +275,19 @@ std::size_t write_view(ModelField& model_field, const std::optional<Entity>& ent
   check_view_ending(path);
   const SizeField& field = model_field.field();
   check_entity(field, entity);
-  const fs::path unfinished = path + ".unfinished";
-  const auto fail = [&](int problem) {
-    throw Error("Cannot write " + path + " (" + std::strerror(problem) +
-                "): choose another file, or make room for it.");
-  };
-  errno = 0;
-  if (fs::is_directory(path)) {
-    fail(EISDIR);
-  }
-  std::ofstream file(unfinished, std::ios::binary);
-  if (!file) {
-    fail(errno);
-  }
-  try {
+  std::size_t cell_count = 0;
+  write_whole_file(path, [&](const std::string& unfinished) {
+    std::ofstream file(unfinished, std::ios::binary);
+    if (!file) {
+      return false;
+    }
     model_field.refresh_if_needed();
     check_some_size(field, entity);
     const std::string ending = ending_of(path);
     const std::string name = fs::path(path).stem().string();
     const FieldCells cells =
         field_cells(field, entity, ending == ".vtu" ? CellUse::show : CellUse::interpolate);
+    cell_count = cells.cells.size();
     errno = 0;
     if (ending == ".vtu") {
       write_vtu(cells, file);
@@ -304,17 +297,9 @@ std::size_t write_view(ModelField& model_field, const std::optional<Entity>& ent
       write_msh(cells, name, file);
     }
     file.close();
-    if (!file) {
-      fail(errno);
-    }
-    fs::rename(unfinished, path);
-    return cells.cells.size();
-  } catch (...) {
-    file.close();
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
-    throw;
-  }
+    return !file.fail();
+  });
+  return cell_count;
 }
 
 }  // namespace meshgrow
