@@ -9,8 +9,9 @@ import subprocess
 import gmsh
 import pytest
 
+from program import PROGRAM
+
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples"
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
 
 
 def commands_of(step):

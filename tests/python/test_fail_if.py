@@ -1,15 +1,14 @@
 """Conditions that a mesh must not meet, for continuous integration: `--fail-if` and `--report`."""
 
 import json
-import os
 import re
-import subprocess
 
 import gmsh
 import numpy as np
 import pytest
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import run
+
 KEYS = ["elements", "smallest_size", "largest_size", "ratio_max", "ratio_p99", "length_median",
         "length_share_good", "length_share_over_2", "gamma_min", "gamma_mean", "sicn_min",
         "sicn_mean"]
@@ -22,10 +21,6 @@ def box(tmp_path):
     path = tmp_path / "box.geo"
     path.write_text(BOX)
     return path
-
-
-def run(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
 
 
 def conditions(*texts):

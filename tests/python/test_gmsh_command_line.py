@@ -1,6 +1,5 @@
 """`meshgrow mesh` in the place of `gmsh`: the same arguments make the same mesh."""
 
-import os
 import re
 import subprocess
 import sys
@@ -8,7 +7,8 @@ import sys
 import gmsh
 import pytest
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import PROGRAM
+
 # The program of the Gmsh that this Python has: both start with the library's own main function.
 GMSH = (["/usr/bin/gmsh"] if gmsh.__version__.startswith("4.8") else
         [sys.executable, "-c", "import sys, gmsh; gmsh.initialize(sys.argv, run=True)"])

@@ -1,12 +1,10 @@
 """Size functions that a .geo defines: ONELAB strings, which stock gmsh shows and ignores."""
 
-import os
-import subprocess
 
 import gmsh
 import pytest
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import run
 
 BOXES = """
 SetFactory("OpenCASCADE");
@@ -30,10 +28,6 @@ DefineConstant[ third = {"", Name "Size functions/c empty", ReadOnly 1} ];
 DefineConstant[ fourth = {"fixed source nonsense", Name "Other/Size functions/no"} ];
 DefineConstant[ size = {0.1, Name "Size functions/a number"} ];
 """ % MESH
-
-
-def run(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
 
 
 def mesh(model, out, *arguments):

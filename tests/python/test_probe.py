@@ -1,7 +1,6 @@
 """What decides a size: `field.probe` and `meshgrow probe`."""
 
 import json
-import os
 import subprocess
 
 import gmsh
@@ -10,7 +9,8 @@ import pytest
 
 import meshgrow
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import PROGRAM
+
 FIXED = "fixed source Surface{1} attach Volume{1} size 0.1 growth 1.3 limit 0.5"
 MESH = "mesh source Surface{2} attach Volume{2} growth 1.25 limit 0.6"
 BOXES = """

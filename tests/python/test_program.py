@@ -3,13 +3,12 @@
 import json
 import os
 import re
-import subprocess
 import sys
 
 import gmsh
 import pytest
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import run
 
 BOX = """
 SetFactory("OpenCASCADE");
@@ -29,11 +28,6 @@ def box(tmp_path):
     path = tmp_path / "box.geo"
     path.write_text(BOX)
     return path
-
-
-def run(*arguments, **environment):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          env={**os.environ, **environment})
 
 
 def mesh(*arguments):

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import PROGRAM
 
 BALL = """
 SetFactory("OpenCASCADE");

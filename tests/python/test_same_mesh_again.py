@@ -6,7 +6,7 @@ import subprocess
 import gmsh
 import pytest
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import PROGRAM
 
 MODEL = """
 SetFactory("OpenCASCADE");

@@ -1,7 +1,6 @@
 """Saved fields where users meet them: damaged ones, in other processes, beside options."""
 
 import copy
-import os
 import pickle
 import subprocess
 import sys
@@ -13,8 +12,7 @@ import pytest
 
 import models
 from meshes import random_points
-
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import PROGRAM
 
 
 @pytest.fixture

@@ -13,7 +13,8 @@ import pytest
 
 import meshgrow
 
-PROGRAM = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
+from program import PROGRAM
+
 EXAMPLES = os.path.join(os.path.dirname(__file__), "..", "..", "examples")
 # The program of the same generation stands beside this Python.
 GMSH = os.path.join(os.path.dirname(sys.executable), "gmsh")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import models
+from program import run
 
 SEED = 20
 
@@ -315,11 +316,6 @@ SetFactory("OpenCASCADE");
 Box(1) = {0, 0, 0, 1, 1, 1};
 """
 FIXED = "fixed source Point{1} attach Volume{1} size 0.03 growth 1.2 limit 0.1"  # at (0, 0, 1)
-
-
-def run(*arguments):
-    program = os.environ.get("MESHGROW_PROGRAM", "meshgrow")
-    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
 
 
 def stock_gmsh():
