@@ -9,8 +9,8 @@ import time
 import gmsh
 import meshgrow
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
-OUT = os.environ.get("MESHGROW_EXAMPLES_OUT", os.path.join(FOLDER, "out"))
+from page.cases import FOLDER as PAGE_FOLDER, OUT
+
 # Where the models of Gmsh's documentation are: in Debian's gmsh-doc (packed) or PyPI's wheel.
 MODEL_FOLDERS = [os.path.join("/usr/share/doc/gmsh-doc/doc/gmsh", name)
                  for name in ("demos/api", "tutorial")]
@@ -102,7 +102,7 @@ def picture(before, after, name, titles, *options):
         return None
     print("-- rendering %s" % os.path.relpath(path), flush=True)
     subprocess.run(
-        [sys.executable, os.path.join(FOLDER, "render_cut.py"), before, after, "-o", path,
+        [sys.executable, os.path.join(PAGE_FOLDER, "render_cut.py"), before, after, "-o", path,
          "--title-before", titles[0], "--title-after", titles[1], *options], check=True)
     return path
 

@@ -56,7 +56,8 @@ json dim_tags(const std::vector<Entity>& entities) {
   return result;
 }
 
-json summary_json(const meshgrow::SizeField& field) {
+json summary_json(const meshgrow::ModelField& model_field) {
+  const meshgrow::SizeField& field = model_field.field();
   json functions = json::array();
   for (size_t i = 0; i < field.functions().size(); ++i) {
     const SizeFunction& function = field.functions()[i];
@@ -88,7 +89,10 @@ json summary_json(const meshgrow::SizeField& field) {
     }
     groups.push_back(entry);
   }
-  return {{"functions", functions}, {"groups", groups}};
+  const meshgrow::ModelField::RunTimes& times = model_field.run_times();
+  return {{"functions", functions},
+          {"groups", groups},
+          {"seconds", {{"gmsh", times.gmsh}, {"meshgrow", times.meshgrow}}}};
 }
 
 }  // namespace
@@ -215,6 +219,6 @@ char* meshgrow_field_summary(meshgrow_field* field) {
 char* meshgrow_field_summary_json(meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
     deref(field).read_if_needed();
-    return copy_text(summary_json(deref(field).field()).dump());
+    return copy_text(summary_json(deref(field)).dump());
   });
 }

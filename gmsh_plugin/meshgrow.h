@@ -224,7 +224,9 @@ MESHGROW_API double meshgrow_field_callback_4_8(int dim, int tag, double x, doub
 /* Functions, groups and grids as text; NULL on failure. To be freed by meshgrow_free. */
 MESHGROW_API char* meshgrow_field_summary(meshgrow_field* field);
 
-/* The same as JSON: {"functions": […], "groups": [{"entities": …, "grid": …}, …]}. */
+/* The same as JSON: {"functions": […], "groups": [{"entities": …, "grid": …}, …], "seconds":
+ * {"gmsh": …, "meshgrow": …}}, the last being the wall time of the last meshgrow_field_generate: in
+ * Gmsh's meshers, the sizes that they ask for included, and the rest. */
 MESHGROW_API char* meshgrow_field_summary_json(meshgrow_field* field);
 
 /* Gradation and quality of the current model's mesh of dimension `dim` (2 or 3) as JSON, restricted

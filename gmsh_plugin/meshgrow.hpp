@@ -369,7 +369,8 @@ class SizeField {
 
   /// Functions, groups and grids as text for people.
   std::string summary() const { return detail::take_text(meshgrow_field_summary(c_field())); }
-  /// The same as JSON: {"functions": […], "groups": […]}.
+  /// The same as JSON: {"functions": […], "groups": […], "seconds": {"gmsh": …, "meshgrow": …}},
+  /// the last being the wall time of the last `generate`.
   std::string statistics() const {
     return detail::take_text(meshgrow_field_summary_json(c_field()));
   }

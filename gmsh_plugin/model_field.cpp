@@ -12,6 +12,7 @@
 #include "ordered_mesher.h"
 #include "remesh.h"
 #include "size_function_text.h"
+#include "stop_watch.h"
 
 namespace meshgrow {
 
@@ -338,6 +339,8 @@ void ModelField::generate(int dim, bool remesh) {
       callback_ = std::make_unique<SizeCallback>(answers_, model_);
     }
   };
+  run_times_ = {};
+  const StopWatch watch;
   try {
     adapt_to_meshers();
     OrderedMesher::check_options();
@@ -357,8 +360,11 @@ void ModelField::generate(int dim, bool remesh) {
   if (element_order > 1.0) {
     GmshState state;
     state.set_option("Mesh.Renumber", 0.0);
+    const StopWatch of_order;
     gmsh::set_order(static_cast<int>(element_order));
+    run_times_.gmsh += of_order.seconds();
   }
+  run_times_.meshgrow = watch.seconds() - run_times_.gmsh;
 }
 
 }  // namespace meshgrow

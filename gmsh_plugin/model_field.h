@@ -119,6 +119,13 @@ class ModelField {
   /// `remesh` only sources of mesh size functions. See ordered_mesher.h.
   void generate(int dim, bool remesh = false);
 
+  /// Wall time of the last `generate`, in seconds; zeros before the first.
+  struct RunTimes {
+    double gmsh = 0.0;      ///< in Gmsh's meshers, the sizes that they ask for included
+    double meshgrow = 0.0;  ///< the rest: reading, trees and grids, putting meshes back
+  };
+  const RunTimes& run_times() const { return run_times_; }
+
  private:
   friend class OrderedMesher;
 
@@ -201,6 +208,7 @@ class ModelField {
   std::mutex calls_mutex_;
   std::string file_;  ///< that it was loaded from; empty for a field of the model
   bool generating_ = false;
+  RunTimes run_times_;
   std::set<std::size_t> reported_;
   ProgressListener listener_;
   std::function<bool()> wants_stop_;

@@ -10,6 +10,7 @@
 #include "meshing_plan.h"
 #include "periodic_copies.h"
 #include "remesh.h"
+#include "stop_watch.h"
 
 namespace meshgrow {
 
@@ -367,8 +368,10 @@ void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
         by_distance ? std::make_unique<const BoundaryDistance>(entities, field_.topology())
                     : nullptr);
   }
+  const StopWatch watch;
   try {
     gmsh::generate(entities.front().dim);
+    model_field_.run_times_.gmsh += watch.seconds();
   } catch (const Error& error) {
     remove_protection(entities.front());
     check_faces_stayed(entities, name);

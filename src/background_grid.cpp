@@ -1,13 +1,13 @@
 #include "background_grid.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "error.h"
 #include "grid_builder.h"
 #include "grid_cell.h"
 #include "number_text.h"
+#include "stop_watch.h"
 
 namespace meshgrow {
 
@@ -38,7 +38,7 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double siz
                                const Box& box, const GridOptions& options)
     : tree_(std::move(tree)) {
   check(options);
-  const auto start = std::chrono::steady_clock::now();
+  const StopWatch watch;
   stored_.size_limit = size_limit;
   if (!box.isEmpty()) {
     // A hair larger, so that points on the box's own faces are inside in spite of rounding.
@@ -57,8 +57,7 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double siz
   stored_.table = std::move(table.entries);
   stored_.table_depth = table.depth;
   GridStatistics& statistics = stored_.statistics;
-  statistics.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  statistics.seconds = watch.seconds();
   statistics.interpolated_leaves = stored_.corners.size();
   statistics.exact_leaves = stored_.exact_begin.size() - 1;
   statistics.blocks = stored_.blocks.size() - 1;  // one stands above the root

@@ -1,7 +1,6 @@
 #include "size_field.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 
 #include "error.h"
@@ -12,6 +11,7 @@
 #include "start_sizes/fixed_start_sizes.h"
 #include "start_sizes/mesh_start_sizes.h"
 #include "start_sizes/proximity_start_sizes.h"
+#include "stop_watch.h"
 
 namespace meshgrow {
 
@@ -317,7 +317,7 @@ bool SizeField::wants_grid(const Group& group, const std::vector<Entity>& entiti
 }
 
 void SizeField::build_tree(Group& group) const {
-  const auto start = std::chrono::steady_clock::now();
+  const StopWatch watch;
   double size_limit = no_size;
   SizedFacets facets;
   group.origins.clear();
@@ -344,8 +344,7 @@ void SizeField::build_tree(Group& group) const {
   group.size_limit = size_limit;
   group.grid = nullptr;
   group.changed = false;
-  group.tree_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  group.tree_seconds = watch.seconds();
 }
 
 int SizeField::threads_for(std::size_t facets) const {

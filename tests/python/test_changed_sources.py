@@ -1,5 +1,7 @@
 """A source that is meshed anew is noticed: in answers, summaries and within runs of Gmsh."""
 
+import time
+
 import gmsh
 import meshgrow
 import pytest
@@ -108,3 +110,14 @@ def test_a_fixed_source_volume_of_a_mesh_file_is_its_faces_meshes(tmp_path):
     field.add_fixed([model.left], [model.right], 0.1, 1.25, 5.0)
     # 0.5 from the face between the volumes: 0.1 + (1 - 1 / 1.25) * 0.5.
     assert field.exact_size(*model.right, [[1.5, 0.5, 0.5]])[0] == pytest.approx(0.2)
+
+
+def test_statistics_tell_the_seconds_of_the_last_run():
+    model, field = square_with_source(0.1)
+    assert field.statistics()["seconds"] == {"gmsh": 0, "meshgrow": 0}
+    begin = time.perf_counter()
+    field.generate(2)
+    elapsed = time.perf_counter() - begin
+    seconds = field.statistics()["seconds"]
+    assert seconds["gmsh"] > 0 and seconds["meshgrow"] > 0
+    assert sum(seconds.values()) <= elapsed

@@ -17,7 +17,7 @@ def example(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(EXAMPLES)
 
     def load(name):
-        for module in ("example_tools", name):
+        for module in ("page.cases", "example_tools", name):
             sys.modules.pop(module, None)
         return importlib.import_module(name)
 
