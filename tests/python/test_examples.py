@@ -1,27 +1,8 @@
 """The examples at reduced size, with the numbers that they are there to show."""
 
-import importlib
-import os
-import sys
-
 import pytest
 
-EXAMPLES = os.path.join(os.path.dirname(__file__), "..", "..", "examples")
-
-
-@pytest.fixture
-def example(tmp_path, monkeypatch):
-    monkeypatch.setenv("MESHGROW_EXAMPLES_OUT", str(tmp_path))
-    monkeypatch.setenv("MESHGROW_EXAMPLES_PICTURES", "0")
-    monkeypatch.setenv("MESHGROW_EXAMPLES_COARSE", "2")
-    monkeypatch.syspath_prepend(EXAMPLES)
-
-    def load(name):
-        for module in ("page.cases", "example_tools", name):
-            sys.modules.pop(module, None)
-        return importlib.import_module(name)
-
-    return load
+from example_fixture import example  # noqa: F401
 
 
 def test_figure8_grows_smoothly_on_both_sides_of_the_common_faces(example, tmp_path):
