@@ -85,6 +85,13 @@ def generate(field, what, dim=3):
     print("   %.1f s" % (time.perf_counter() - begin), flush=True)
 
 
+def mesh_of(entity):
+    """Mesh of an entity and its boundary, to be compared: {node: coordinates} and nodes of elements."""
+    nodes, coordinates, _ = gmsh.model.mesh.getNodes(*entity, includeBoundary=True)
+    places = dict(zip(nodes.tolist(), zip(*[iter(coordinates.tolist())] * 3)))
+    return places, [part.tolist() for part in gmsh.model.mesh.getElements(*entity)[2]]
+
+
 def write(name):
     """Writes the current mesh, complete or not at all, and returns its path."""
     path = os.path.join(OUT, name)
