@@ -11,13 +11,16 @@ Needs: Gmsh with its Python module (4.8 or newer), numpy and matplotlib.
 PyPI:  gmsh numpy matplotlib
 """
 
-import os
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
-from render_cut import (OneSentenceParser, RenderError, common_range, format_size, import_gmsh,
-                        measure_file, parse_tags, round_sizes)
+# The first of them says if numpy is missing.
+from environment import import_gmsh, import_matplotlib
+from arguments import OneSentenceParser, parse_tags
+from errors import RenderError
+from mesh_sizes import common_range, measure_file
+from picture_file import written_beside
+from size_scale import format_size, round_sizes
 
 import numpy as np
 
@@ -26,16 +29,6 @@ WIDTH, HEIGHT, DOTS_PER_INCH = 13, 5.2, 120  # inches
 # Neither red nor blue, which mean small and large in the pictures beside.
 COLORS = ("#c2620a", "#11665f")
 LINE_STYLES = ((0, (5, 1.5)), "solid")
-
-
-def import_matplotlib():
-    """Return matplotlib's Figure, which draws without a window, and its tick classes."""
-    try:
-        from matplotlib import ticker
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise RenderError("matplotlib is missing; run 'pip install matplotlib'.") from None
-    return Figure, ticker
 
 
 def bin_edges(low, high):
@@ -85,20 +78,6 @@ def draw(meshes, titles):
     return figure
 
 
-def save(figure, path):
-    """Write the PNG, complete or not at all."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        figure.savefig(part, format="png")
-        os.replace(part, path)
-    except OSError as error:
-        raise RenderError(f"'{path}' cannot be written ({error.strerror}); "
-                          "choose another place for it.") from None
-    finally:
-        if part.exists():
-            part.unlink()
-
-
 def parse_arguments(arguments):
     """Return the options, checked as far as possible without the meshes."""
     parser = OneSentenceParser(
@@ -122,11 +101,13 @@ def parse_arguments(arguments):
 def main(arguments):
     """Run the program; return its exit code."""
     options = parse_arguments(arguments)
-    what = SimpleNamespace(dim=options.dim, volumes=options.entities)
     try:
         gmsh = import_gmsh()
-        meshes = [measure_file(gmsh, path, what) for path in options.meshes]
-        save(draw(meshes, (options.title_before, options.title_after)), options.output)
+        meshes = [measure_file(gmsh, path, options.dim, options.entities)
+                  for path in options.meshes]
+        figure = draw(meshes, (options.title_before, options.title_after))
+        with written_beside(options.output) as part:
+            figure.savefig(part, format="png")
     except RenderError as error:
         print(f"draw_histogram: {error}", file=sys.stderr)
         return 1
