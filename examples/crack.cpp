@@ -49,11 +49,11 @@ CrackedBlock build_geometry() {
 }
 
 void add_crack_sizes(meshgrow::SizeField& field, const CrackedBlock& model) {
-  field.add_fixed(model.front, model.crack, front_size, crack_growth, crack_limit, "crack");
+  field.add_fixed(model.front, model.crack, front_size, crack_growth, crack_limit);
 }
 
 void add_block_sizes(meshgrow::SizeField& field, const CrackedBlock& model) {
-  field.add_mesh(model.crack, model.block, block_growth, block_limit, "block");
+  field.add_mesh(model.crack, model.block, block_growth, block_limit);
 }
 
 }  // namespace

@@ -42,12 +42,12 @@ def build_geometry():
 
 def add_crack_sizes(field, crack, front):
     field.add_fixed(sources=[(1, front)], attach=[(2, crack)], size=FRONT_SIZE,
-                    growth_rate=CRACK_GROWTH, size_limit=CRACK_LIMIT, name="crack")
+                    growth_rate=CRACK_GROWTH, size_limit=CRACK_LIMIT)
 
 
 def add_block_sizes(field, block, crack):
     field.add_mesh(sources=[(2, crack)], attach=[(3, block)],
-                   growth_rate=BLOCK_GROWTH, size_limit=BLOCK_LIMIT, name="block")
+                   growth_rate=BLOCK_GROWTH, size_limit=BLOCK_LIMIT)
 
 
 def make_mesh(case, name, title, with_mesh_function):
