@@ -228,11 +228,11 @@ PAGE = {  # title, about, point and radius of each picture
         "NACA 0012, sizes at nose, shock and tail",
         "One mesh size function on curves that are bunched in the usual way takes the place of six "
         "fixed ones. Left to Gmsh, the air has elements that are far larger than what they touch.",
-        ((0.5, 0, 0.75), (0.06, 0, 0.12))),
+        ((0.5, 0, 0.65), (0.06, 0, 0.12))),
     "naca0012_quads": (
         "NACA 0012, quadrilaterals",
         "The same with quadrilaterals: without the size function, sizes jump beside the airfoil.",
-        ((0.5, 0, 0.75),)),
+        ((0.5, 0, 0.65),)),
     "cambered_flap": (
         "NACA 4412 with a flap",
         "A cambered airfoil with a flap: the slot between them grows from both of its walls.",
@@ -298,7 +298,7 @@ def make_case(name):
         files.append(page["mesh"])
         gmsh.model.remove()
     for before in variants_of(name)[:-1]:
-        for x, y, radius in pictures:
+        for x, y, radius in pictures[:1] if before == "fixed" else pictures:
             case.draw("surface", before, "with", "--dim", "2", "--view", "0,0,0",
                       "--focus", "%g,%g,0,%g" % (x, y, radius))
     case.draw_histogram("without", "with", dim=2)
