@@ -11,11 +11,13 @@ import gmsh
 import meshgrow
 
 import example_tools as tools
+from page import cases
 
 COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 BOLT_SIZE = 1.5 * COARSE  # millimetres
 GROWTH_RATE = 1.2
 SIZE_LIMIT = 15.0
+TITLES = {"without": "plates by Gmsh's own sizes", "with": "plates grow from the bolts' faces"}
 
 
 def build_geometry():
@@ -32,8 +34,8 @@ def build_geometry():
     return plates, bolts
 
 
-def make_mesh(name, with_mesh_function):
-    """Meshes the assembly; returns the report of the plates and the file."""
+def make_mesh(case, name, with_mesh_function):
+    """Meshes the assembly for the case; returns reports, the file and the plates."""
     tools.start("assembly " + name)
     gmsh.option.setNumber("Mesh.MeshSizeMax", SIZE_LIMIT)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 12)
@@ -63,21 +65,34 @@ def make_mesh(name, with_mesh_function):
                "all, " + name: meshgrow.report(3)}
     if with_mesh_function:
         print("\n" + asked.summary(), end="")
+    case.add(name, TITLES[name], path, reports["plates, " + name], field,
+             facts={"elements of all volumes": reports["all, " + name]["elements"]})
     gmsh.model.remove()
-    return reports, path
+    return reports, path, plates
 
 
 def main():
     gmsh.initialize()
-    without, before = make_mesh("without", False)
-    with_function, after = make_mesh("with", True)
-    rows = {**without, **with_function}
-    picture = tools.picture(before, after, "assembly.png",
-                            ("bolts fine, plates by Gmsh's own sizes",
-                             "plates grow from the bolts' faces, growth 1.2"),
-                            "--plane", "0,75,0,0,-1,0", "--focus", "33,75,15,33")
+    case = cases.Case(
+        "assembly", "bolts", title="Plates around finely meshed bolts",
+        about="A real assembly of 18 volumes. The bolts are meshed first; the plate and the brackets "
+        "share faces with them. Left to Gmsh, the plates' sizes jump beside the bolts; with a mesh "
+        "size function on the shared faces, they grow from them.",
+        premeshed="the bolts, with a fixed size of %g mm" % BOLT_SIZE,
+        measured="the plate and the brackets")
+    rows, paths = {}, []
+    for name in ("without", "with"):
+        reports, path, plates = make_mesh(case, name, name == "with")
+        rows.update(reports)
+        paths.append(path)
+    case.draw("surface", "without", "with", "--dim", "2", "--view", "-55,0,-30",
+              caption="The surfaces of all volumes.")
+    case.draw("cut", "without", "with", "--plane", "0,75,0,0,-1,0", "--focus", "33,75,15,33",
+              caption="Cut along the axis of a bolt, which is in the middle.")
+    case.draw_histogram("without", "with", 3, [tag for _, tag in plates],
+                        caption="The plate and the brackets.")
     tools.show(dict(sorted(rows.items(), key=lambda row: row[0].split(",")[0], reverse=True)),
-               [before, after, picture])
+               paths + case.save())
     gmsh.finalize()
     return rows
 

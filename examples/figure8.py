@@ -11,8 +11,12 @@ import gmsh
 import meshgrow
 
 import example_tools as tools
+from page import cases
 
 GROWTH_RATE = 1.2
+TITLES = {"no extension": "Gmsh's own sizes",
+          "without": "Gmsh extends the sizes of the faces",
+          "with": "a mesh size function on the common faces"}
 SIZE_LIMIT = 2.0
 COARSE = float(tools.os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 
@@ -38,8 +42,8 @@ def premesh(faces):
     gmsh.model.mesh.removeSizeCallback()
 
 
-def make_mesh(name, with_size_function, extend_from_boundary=1):
-    """Meshes the model; returns reports of both volumes and the file."""
+def make_mesh(case, name, with_size_function, extend_from_boundary=1):
+    """Meshes the model for the case; returns reports, the file and the volume and faces to show."""
     tools.start("figure8 " + name)
     inner, outer, common = build_geometry()
     premesh(common)
@@ -59,22 +63,34 @@ def make_mesh(name, with_size_function, extend_from_boundary=1):
     }
     if with_size_function:
         print("\n" + asked.summary(), end="")
+    case.add(name, TITLES[name], path, reports["outer, " + name], field,
+             facts={"inner volume, 99 %": reports["inner, " + name]["ratio_99"]})
     gmsh.model.remove()
-    return reports, path
+    return reports, path, (outer, common)
 
 
 def main():
     gmsh.initialize()
-    nothing, _ = make_mesh("no extension", False, extend_from_boundary=0)
-    without, before = make_mesh("without", False)
-    with_function, after = make_mesh("with", True)
-    rows = {**nothing, **without, **with_function}
-    picture = tools.picture(before, after, "figure8.png",
-                            ("without: Gmsh extends the sizes of the faces",
-                             "with a mesh size function, growth 1.2"),
-                            "--plane", "0,0,0,0,0,1")
+    case = cases.Case(
+        "figure8", "box_in_box", title="A volume inside another", figures="Figure 8",
+        about="Both volumes are meshed from the faces that they share. Gmsh's own sizes know too "
+        "little of this mesh, and jump beside the faces; with a mesh size function on them, their "
+        "sizes grow into both volumes.",
+        premeshed="the common faces, finely at one corner (0.08) and coarsely at the opposite one "
+        "(0.45)", measured="the outer volume")
+    rows, paths = {}, []
+    for name, extend_from_boundary in (("no extension", 0), ("without", 1), ("with", 1)):
+        reports, path, (outer, common) = make_mesh(case, name, name == "with", extend_from_boundary)
+        rows.update(reports)
+        paths.append(path)
+    case.draw("surface", "without", "with", "--dim", "2", "--view", "iso", "--volumes",
+              ",".join(str(tag) for _, tag in common),
+              caption="The common faces: their mesh was there first and is the same in both.")
+    case.draw("cut", "without", "with", "--plane", "0,0,0,0,0,1",
+              caption="Cut across the middle: left, sizes jump at the fine corner, the lower left one.")
+    case.draw_histogram("without", "with", 3, [outer[1]], caption="The outer volume.")
     tools.show(dict(sorted(rows.items(), key=lambda row: row[0].split(",")[0], reverse=True)),
-               [before, after, picture])
+               paths + case.save())
     gmsh.finalize()
     return rows
 

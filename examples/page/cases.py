@@ -46,7 +46,8 @@ class Case:
         title:   over its pictures and in the table
         mesh:    path of the file
         report:  of meshgrow.report, against the sizes asked for
-        field:   that it was made with, after generate(): its lines of text and its seconds are told
+        field:   that it was made with, after generate() and while its model is there: its lines of
+                 text and its seconds are told
         seconds: {"gmsh": …, "meshgrow": …} where it was not made by field.generate()
         facts:   more numbers or words for the table, {"lines of input": 6, …}
         """
@@ -58,20 +59,21 @@ class Case:
                        for key, value in report.items()},
             "seconds": seconds or statistics["seconds"], "facts": facts or {}})
 
-    def draw(self, kind, before, after, *options):
+    def draw(self, kind, before, after, *options, caption=""):
         """Renders the meshes of two variants side by side, one camera and one colour scale.
 
         kind: "surface" or "cut"; options: of render_cut.py, as "--plane", "0,0,0,0,-1,0"
+        caption: what is drawn and where to look, beside the picture
         """
         titles = [self._variant(name)["title"] for name in (before, after)]
-        self._make(kind, "render_cut.py", *self._meshes(before, after), "--title-before", titles[0],
-                   "--title-after", titles[1], *options)
+        self._make(kind, caption, "render_cut.py", *self._meshes(before, after), "--title-before",
+                   titles[0], "--title-after", titles[1], *options)
 
-    def draw_histogram(self, before, after, dim, entities=()):
+    def draw_histogram(self, before, after, dim, entities=(), caption=""):
         """Draws how many elements of `dim` (of these tags; empty: all) have which size."""
         titles = [self._variant(name)["title"] for name in (before, after)]
         of_these = ("--entities", ",".join(map(str, entities))) if entities else ()
-        self._make("histogram", "draw_histogram.py", *self._meshes(before, after),
+        self._make("histogram", caption, "draw_histogram.py", *self._meshes(before, after),
                    "--title-before", titles[0], "--title-after", titles[1], "--dim", str(dim),
                    *of_these)
 
@@ -92,7 +94,7 @@ class Case:
     def _meshes(self, *names):
         return [os.path.join(OUT, self._variant(name)["mesh"]) for name in names]
 
-    def _make(self, kind, script, *arguments):
+    def _make(self, kind, caption, script, *arguments):
         if not PICTURES_WANTED:
             return
         assert kind in PICTURE_KINDS, kind
@@ -103,4 +105,4 @@ class Case:
         print("-- drawing %s" % os.path.relpath(path), flush=True)
         subprocess.run([sys.executable, os.path.join(FOLDER, script), *arguments, "-o", path],
                        check=True)
-        self.record["pictures"].append({"kind": kind, "file": name})
+        self.record["pictures"].append({"kind": kind, "file": name, "caption": caption})

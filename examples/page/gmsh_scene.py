@@ -1,21 +1,15 @@
 """What Gmsh shows: a view of the sizes, cut by a plane, seen by the camera."""
 
 import math
-import struct
 from pathlib import Path
 
 import numpy as np
 
+from picture_file import png_size
 from size_scale import ramp_color
 
 COLOR_STEPS = 256
 OUTLINE_COLOR = (40, 40, 40)
-
-
-def png_size(path):
-    """Return width and height of a PNG file in pixels."""
-    with open(path, "rb") as stream:
-        return struct.unpack(">II", stream.read(24)[16:24])
 
 
 def set_scene_options(gmsh):

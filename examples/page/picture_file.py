@@ -1,13 +1,20 @@
-"""Writes pictures, complete or not at all."""
+"""Files of pictures: how large they are, and writing them complete or not at all."""
 
 import contextlib
 import os
+import struct
 
 from errors import RenderError
 
 # The picture is stored with as many colours as this number of bytes allows.
 MAX_FILE_BYTES = 480_000
 PALETTE_SIZES = (256, 192, 128, 96, 64, 48, 32)
+
+
+def png_size(path):
+    """Return width and height of a PNG file in pixels."""
+    with open(path, "rb") as stream:
+        return struct.unpack(">II", stream.read(24)[16:24])
 
 
 @contextlib.contextmanager
