@@ -88,7 +88,8 @@ def main():
     case.draw("surface", "without", "with", "--dim", "2", "--view", "-55,0,-30",
               caption="The surfaces of all volumes.")
     case.draw("cut", "without", "with", "--plane", "0,75,0,0,-1,0", "--focus", "33,75,15,33",
-              caption="Cut along the axis of a bolt, which is in the middle.")
+              caption="Cut along the axis of a bolt, the red column left of the middle. The scale of "
+              "colours is that of the whole assembly.")
     case.draw_histogram("without", "with", 3, [tag for _, tag in plates],
                         caption="The plate and the brackets.")
     tools.show(dict(sorted(rows.items(), key=lambda row: row[0].split(",")[0], reverse=True)),

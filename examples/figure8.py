@@ -33,6 +33,7 @@ def premesh(faces):
         return COARSE * 0.08 * math.pow(0.45 / 0.08, min(max(way, 0.0), 1.0))
 
     gmsh.model.mesh.setSizeCallback(size)
+    gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)  # the same in each variant
     gmsh.option.setNumber("Mesh.MeshOnlyVisible", 1)
     gmsh.model.setVisibility(gmsh.model.getEntities(), 0)
     gmsh.model.setVisibility(faces + tools.boundary(faces), 1)
@@ -60,6 +61,7 @@ def make_mesh(case, name, with_size_function, extend_from_boundary=1):
     reports = {
         "outer, " + name: meshgrow.report(3, [outer], asked),
         "inner, " + name: meshgrow.report(3, [inner], asked),
+        "faces, " + name: meshgrow.report(2, common),
     }
     if with_size_function:
         print("\n" + asked.summary(), end="")

@@ -54,6 +54,7 @@ def draw(meshes, titles):
     low, high = common_range(meshes)
     edges = bin_edges(low, high)
     figure = figure_class(figsize=(WIDTH, HEIGHT), dpi=DOTS_PER_INCH, layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.14, h_pad=0.1)  # inches
     axes = figure.add_subplot()
     for mesh, title, color, style in zip(meshes, titles, COLORS, LINE_STYLES):
         share = 100 * np.histogram(mesh.sizes, edges)[0] / len(mesh.sizes)

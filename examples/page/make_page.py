@@ -43,10 +43,13 @@ def fill_in(examples):
                           "package python3-jinja2.") from None
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(FOLDER), autoescape=True,
                                      undefined=jinja2.StrictUndefined)
+    # A long list of tags may go on in the next line, and is copied without anything in it.
+    markup = jinja2.utils.markupsafe.Markup
+    environment.filters["breakable"] = lambda text: markup(",<wbr>").join(text.split(","))
     style = (FOLDER / "page.css").read_text(encoding="utf-8")
     colors = ", ".join("rgb(%d %d %d)" % color for color in SIZE_COLORS)
     return environment.get_template("page.html.jinja").render(
-        style=jinja2.utils.markupsafe.Markup(style), colors=colors, headings=HEADINGS,
+        style=markup(style), colors=colors, headings=HEADINGS,
         meanings=MEANINGS, examples=examples,
         cases=[case for example in examples for case in example["cases"]])
 

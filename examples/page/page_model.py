@@ -20,20 +20,20 @@ THUMBNAIL_KINDS = ("cut", "surface", "histogram")
 
 # Heading of a column, key in the report, how it is written, the best of it, what it means.
 REPORT_COLUMNS = (
-    ("elements", "elements", number_text.count, None, "of the highest dimension that is measured"),
-    ("ratio max", "ratio_max", number_text.ratio, min,
+    ("elements", "elements", number_text.count, None, "of what is measured: see above the table"),
+    ("ratio, max", "ratio_max", number_text.ratio, min,
      "size of the larger of two neighbours over the smaller, the largest in the mesh; 1 is no jump"),
-    ("ratio 99 %", "ratio_99", number_text.ratio, min,
+    ("ratio, 99\u00a0%", "ratio_99", number_text.ratio, min,
      "99 % of the neighbours have a smaller ratio; with a growth rate of 1.2, 1.2 to 1.35 is what the "
      "irregularity of a good mesh allows"),
     ("length/size", "length_median", number_text.ratio, None,
      "edge length over the size asked for there, the median; 1 is as asked for"),
-    ("good, %", "length_share_good", number_text.percent, None,
+    ("good, in\u00a0%", "length_share_good", number_text.percent, None,
      "share of the edges with a length/size from 1/1.41 to 1.41"),
 )
 TIME_COLUMNS = (
-    ("Gmsh, s", "gmsh", "seconds of meshing in Gmsh itself"),
-    ("meshgrow, s", "meshgrow", "seconds of meshing in meshgrow: reading meshes, answering sizes"),
+    ("seconds in\u00a0Gmsh", "gmsh", "meshing in Gmsh itself"),
+    ("seconds in\u00a0meshgrow", "meshgrow", "reading the meshes of sources, and answering sizes"),
 )
 HEADINGS = [column[0] for column in REPORT_COLUMNS + TIME_COLUMNS]
 MEANINGS = [(column[0], column[-1]) for column in REPORT_COLUMNS + TIME_COLUMNS] + [

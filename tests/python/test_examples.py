@@ -12,6 +12,8 @@ def test_figure8_grows_smoothly_on_both_sides_of_the_common_faces(example, tmp_p
     assert rows["outer, with"]["length_share_over_2"] <= 0.01
     assert rows["outer, without"]["length_share_over_2"] > 0.1
     assert rows["outer, no extension"]["ratio_99"] > rows["outer, with"]["ratio_99"] + 0.2
+    # All were made beside the same mesh of the common faces.
+    assert rows["faces, no extension"] == rows["faces, without"] == rows["faces, with"]
     assert (tmp_path / "figure8_with.msh").exists()
 
 
