@@ -11,13 +11,13 @@ DefineConstant[
   right_face = {0, Choices{0="triangles", 1="quads", 2="mapped"}, Name "Parameters/Right face"},
   growth_rate = {1.2, Min 1.05, Max 2, Name "Parameters/Growth rate"},
   left_limit = {0.12, Min 0.05, Max 1, Name "Parameters/Size limit of the left face"},
-  size_limit = {0.8, Min 0.1, Max 2, Name "Parameters/Size limit"}
+  size_limit = {0.5, Min 0.1, Max 2, Name "Parameters/Size limit"}
 ];
 height = 2;
 right_width = 4;
 If(from_vertex)
-  size = 0.04;
-  left_width = 0.75;
+  size = 0.05;
+  left_width = 1;
 Else
   size = 0.1;
   left_width = 0.8;

@@ -25,19 +25,19 @@ from page import cases
 
 GROWTH_RATE = 1.2
 LEFT_LIMIT = 0.12
-SIZE_LIMIT = 0.8  # of the right face and of Gmsh
+SIZE_LIMIT = 0.5  # of the right face and of Gmsh
 HEIGHT = 2.0
 RIGHT_WIDTH = 4.0
 # Where the sizes come from -> (size there, width of the left face).
-SOURCES = {"left edge": (0.1, 0.8), "upper left vertex": (0.04, 0.75)}
+SOURCES = {"left edge": (0.1, 0.8), "upper left vertex": (0.05, 1.0)}
 RIGHT_FACES = ("triangles", "quads", "mapped")
 VARIANTS = {
     "without": "the right face is left to Gmsh",
     "fixed": "the sizes of the left face grow on into the right face (Figures 4 and 5)",
     "with": "a mesh size function on the common edge acts on the right face (Figures 10 and 11)",
 }
-TITLES = {"without": "right face by Gmsh", "fixed": "right face by a fixed size function",
-          "with": "right face grown from the common edge"}
+TITLES = {"without": "right face by Gmsh", "fixed": "right face by a fixed function",
+          "with": "grown from the common edge"}
 FIGURES = {"left edge": "Figures 4 and 10", "upper left vertex": "Figures 5 and 11"}
 RIGHT = (2, 2)  # the right face, as built below
 # What is drawn beside "with": where elements are mapped, a jump is widest with Gmsh's own sizes.
