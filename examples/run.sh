@@ -1,42 +1,72 @@
 #!/usr/bin/env bash
-# Sets up a fresh machine, builds meshgrow and runs the examples. Arguments pick some of them, for
-# example: examples/run.sh figure8
+# Sets up a fresh machine, builds meshgrow, runs the examples and makes a page of their pictures and
+# numbers, examples/out/index.html. Arguments pick some of them, for example:
+# examples/run.sh airfoil
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/setup.sh
 
-all=(figure8 assembly two_faces volume_in_volume real_parts callbacks plain_gmsh with_pygmsh
-  size_functions stock_gmsh_serve stock_gmsh_view sweep_dask)
+# In the order of the paper's figures; then real parts, then ways to use it.
+all=(airfoil volume_in_volume figure8 two_faces imported_face assembly real_parts terrain crack
+  earlier_run callbacks plain_gmsh with_pygmsh size_functions stock_gmsh_serve stock_gmsh_view
+  sweep_dask)
 export MESHGROW_EXAMPLES_OUT=${MESHGROW_EXAMPLES_OUT:-$PWD/examples/out}
 mkdir -p "$MESHGROW_EXAMPLES_OUT"
 
-# Those in .geo: by the program meshgrow, and by Debian's gmsh as it is.
-run_geo() {
+# Those for stock gmsh: by Debian's gmsh as it is.
+run_stock() {
   local PATH=$build/bin:$PATH
   local -x MESHGROW_GMSH_LIB=$libgmsh_debian
   cp "examples/$1.geo" "$MESHGROW_EXAMPLES_OUT"
-  cd "$MESHGROW_EXAMPLES_OUT"
-  case $1 in
-    size_functions) meshgrow mesh "$1.geo" -3 -o "$1.msh" ;;
-    stock_gmsh_view)
+  (
+    cd "$MESHGROW_EXAMPLES_OUT"
+    if [ "$1" = stock_gmsh_view ]; then
       rm -f sizes.pos
       meshgrow field "$1.geo" -o sizes.pos --size-function \
         'curvature source Surface{:} attach Volume{1} angle 15 growth 1.3 limit 0.4'
       gmsh -3 -v 2 "$1.geo" -o "$1.msh"
-      ;;
-    *) gmsh -v 2 - "$1.geo" ;;
-  esac
-  meshgrow report "$1.msh" --dim "$([ "$1" = stock_gmsh_serve ] && echo 2 || echo 3)"
+    else
+      gmsh -v 2 - "$1.geo"
+    fi
+  )
+  "$build/bin/meshgrow" report "$MESHGROW_EXAMPLES_OUT/$1.msh" \
+    --dim "$([ "$1" = stock_gmsh_serve ] && echo 2 || echo 3)"
+}
+
+# A .geo that `meshgrow mesh` meshes, by the first command of its heading.
+run_geo() {
+  local PATH=$build/bin:$PATH
+  local -x MESHGROW_GMSH_LIB=$libgmsh_newest
+  local command
+  read -ra command < <(sed -n 's|^// *\(meshgrow mesh .*\)|\1|p' "examples/$1.geo")
+  printf '%s\n' "${command[*]}"
+  cp "examples/$1.geo" "$MESHGROW_EXAMPLES_OUT"
+  (cd "$MESHGROW_EXAMPLES_OUT" && "${command[@]}")
 }
 
 for example in "${@:-${all[@]}}"; do
-  if [ -e "examples/$example.geo" ]; then
-    say "Meshing examples/$example.geo"
-    (run_geo "$example")
-    continue
+  found=
+  if [ -e "examples/$example.py" ]; then
+    found=1
+    say "Running examples/$example.py"
+    "$python_newest" "examples/$example.py"
   fi
-  [ -e "examples/$example.py" ] || fail "there is no example '$example': give one of ${all[*]}."
-  say "Running examples/$example.py"
-  "$python_newest" "examples/$example.py"
+  if [ -e "examples/$example.geo" ]; then
+    found=1
+    say "Meshing examples/$example.geo"
+    case $example in
+      stock_gmsh_*) run_stock "$example" ;;
+      *) run_geo "$example" ;;
+    esac
+  fi
+  if [ -e "examples/$example.cpp" ]; then
+    found=1
+    say "Running examples/$example.cpp"
+    "$build/bin/examples/${example}_newest" "$MESHGROW_EXAMPLES_OUT/${example}_cpp.msh"
+  fi
+  [ -n "$found" ] || fail "there is no example '$example': give one of ${all[*]}."
 done
-say "Done. Look at the pictures in examples/out, or open a mesh: gmsh $(ls -t "$MESHGROW_EXAMPLES_OUT"/*.msh | head -n 1)"
+
+say "Making the page"
+"$python_newest" examples/page/make_page.py
+say "Done. Open $MESHGROW_EXAMPLES_OUT/index.html, or a mesh: gmsh $(ls -t "$MESHGROW_EXAMPLES_OUT"/*.msh | head -n 1)"
