@@ -227,7 +227,7 @@ PAGE = {  # title, about, point and radius of each picture
     "naca0012": (
         "NACA 0012, sizes at nose, shock and tail",
         "One mesh size function on curves that are bunched in the usual way takes the place of six "
-        "fixed ones. Left to Gmsh, the small elements at nose, shock and tail end after a few layers.",
+        "fixed ones. Left to Gmsh, the small elements beside it end after a few layers.",
         ((0.5, 0, 0.65), (0.06, 0, 0.12))),
     "naca0012_quads": (
         "NACA 0012, quadrilaterals",
