@@ -13,7 +13,8 @@ curvature and gaps are measured on them. But they were made for the shape only, 
 long as wide and longer, and Gmsh's Delaunay mesher finds no place for a node of its own between
 them, whatever size it is told ("kept" in the table). So the surface is meshed anew, as in Gmsh's
 tutorial t13: the triangles are cut into parametrised patches, and the field that was read from them
-is registered as Gmsh's size callback.
+is registered as Gmsh's size callback. scanned_surface.py keeps what comes out of that, and grows
+from it.
 """
 
 import math
@@ -25,6 +26,7 @@ import meshgrow
 import numpy as np
 
 import example_tools as tools
+from page import cases
 
 COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 GROWTH_RATE = 1.2
@@ -37,6 +39,8 @@ VARIANTS = {
     "Gmsh": "sizes from curvature by Gmsh, 20 elements for a full turn",
     "meshgrow": "create_defaults: curvature 18 degrees, proximity 3 cells per gap, growth 1.2",
 }
+TITLES = {"kept": "triangles of the file kept, defaults", "Gmsh": "sizes from curvature by Gmsh",
+          "meshgrow": "default size functions of meshgrow"}
 
 
 def open_step(name):
@@ -61,10 +65,24 @@ def open_stl(name, keep_triangles=False):
 
 
 PARTS = {"t20_data.step": open_step, "as1-tu-203.stp": open_step, "t13_data.stl": open_stl}
-# How render_cut.py shows them.
-VIEWS = {"t20_data.step": ("--plane", "0,172.3,0,0,0,1"),
-         "as1-tu-203.stp": ("--plane", "0,75,0,0,-1,0"),
-         "t13_data.stl": ("--dim", "2", "--view", "iso")}
+# What the page tells of a part, and the plane that cuts it.
+ABOUT = {
+    "t20_data.step": (
+        "The part of Gmsh's tutorial t20",
+        "A nut with thin chamfers. Gmsh's sizes from curvature know of no gaps; the defaults put "
+        "three elements in each of them.",
+        "0,172.3,0,0,0,1"),
+    "as1-tu-203.stp": (
+        "An assembly",
+        "18 volumes, some as thin as a large element. Gmsh's sizes from curvature jump from the bolts "
+        "to the flat faces beside them, and leave one element across a plate; the defaults grow from "
+        "the bolts, and put three elements in each gap.",
+        "0,75,0,0,-1,0"),
+    "t13_data.stl": (
+        "A scanned surface, meshed anew",
+        "Triangles without CAD, cut into patches and meshed anew. Kept as they are, they are too long "
+        "and thin for size functions to help: Gmsh finds no place for nodes between them.",
+        "0,0,-176,0,-1,0")}
 
 
 def size_range():
@@ -77,26 +95,19 @@ def size_range():
 
 
 def open_part(part, **options):
-    """Opens a part in a model of its own; returns its default field and a list: when the field said
-    what, as pairs."""
+    """Opens a part in a model of its own; returns its default field."""
     gmsh.model.add(part)
     PARTS[part](part, **options)
     smallest, largest = size_range()
-    said = []
-    field = meshgrow.SizeField(progress=lambda line: said.append((time.perf_counter(), line)))
+    field = meshgrow.SizeField()
     field.create_defaults(growth_rate=GROWTH_RATE, size_limit=largest, min_size=smallest)
-    return field, said
+    return field
 
 
-def mesh_with_field(field, said):
-    """Meshes what is not discrete; returns how long it took, the field and the rest."""
-    begin = time.perf_counter()
+def mesh_with_field(field):
+    """Meshes what is not discrete; returns how long it took Gmsh and meshgrow."""
     field.generate(3)
-    end = time.perf_counter()
-    read = min(when for when, line in said if line.startswith("Meshing"))
-    grids = sum(group["grid"]["seconds"] for group in field.statistics()["groups"] if group["grid"])
-    preparing = read - begin + grids
-    return preparing, end - begin - preparing
+    return field.statistics()["seconds"]
 
 
 def mesh_with_callback(field):
@@ -107,7 +118,7 @@ def mesh_with_callback(field):
     gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
     ready = time.perf_counter()
     gmsh.model.mesh.generate(3)
-    seconds = ready - begin, time.perf_counter() - ready
+    seconds = {"gmsh": time.perf_counter() - ready, "meshgrow": ready - begin}
     gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
     field.unregister()
     return seconds
@@ -118,57 +129,80 @@ def mesh_by_gmsh():
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 360 / 18)
     begin = time.perf_counter()
     gmsh.model.mesh.generate(3)
-    seconds = 0, time.perf_counter() - begin
+    seconds = {"gmsh": time.perf_counter() - begin, "meshgrow": 0}
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 0)
     return seconds
 
 
-def finish(part, variant, field, seconds):
-    """Measures and writes the current mesh; returns the numbers of the table and the file."""
+def finish(case, part, variant, field, seconds):
+    """Measures and writes the current mesh and tells the case; returns the numbers of the table."""
     row = {"surface": meshgrow.report(2, field=field), "volume": meshgrow.report(3, field=field),
            "seconds": seconds}
-    print("   %s: field %.1f s, meshing %.1f s" % (variant, *seconds), flush=True)
-    return row, tools.write("real_parts_%s_%s.msh" % (os.path.splitext(part)[0], variant))
+    path = tools.write("real_parts_%s_%s.msh" % (short_name(part), variant))
+    case.add(variant, TITLES[variant], path, row["volume"], field if variant != "Gmsh" else None,
+             seconds)
+    print("   %s: %.1f s in meshgrow, %.1f s in Gmsh" % (
+        variant, seconds["meshgrow"], seconds["gmsh"]), flush=True)
+    return row
 
 
-def mesh_step(part):
-    """Meshes a STEP file; returns {variant: (row, file)}."""
-    field, said = open_part(part)
-    made = {"meshgrow": finish(part, "meshgrow", field, mesh_with_field(field, said))}
+def mesh_step(case, part):
+    """Meshes a STEP file; returns {variant: row}."""
+    field = open_part(part)
+    rows = {"meshgrow": finish(case, part, "meshgrow", field, mesh_with_field(field))}
     gmsh.model.mesh.clear()
-    made["Gmsh"] = finish(part, "Gmsh", field, mesh_by_gmsh())
+    rows["Gmsh"] = finish(case, part, "Gmsh", field, mesh_by_gmsh())
     gmsh.model.remove()
-    return made
+    return rows
 
 
-def mesh_stl(part):
+def mesh_stl(case, part):
     """Meshes an STL file; returns the same. Patches keep the mesh that they got, so each variant
     begins with the file."""
-    made = {}
+    rows = {}
     for variant in VARIANTS:
-        field, said = open_part(part, keep_triangles=variant == "kept")
+        field = open_part(part, keep_triangles=variant == "kept")
         if variant == "kept":
-            seconds = mesh_with_field(field, said)
+            seconds = mesh_with_field(field)
         elif variant == "Gmsh":
             field.refresh()  # measured against only: the sizes that the file asks for
             seconds = mesh_by_gmsh()
         else:
             seconds = mesh_with_callback(field)
-        made[variant] = finish(part, variant, field, seconds)
+        rows[variant] = finish(case, part, variant, field, seconds)
         gmsh.model.remove()
-    return made
+    return rows
+
+
+def short_name(part):
+    return os.path.splitext(part)[0]
+
+
+def mesh_part(part):
+    """Meshes a part and draws its case; returns {variant: row} and its pictures."""
+    title, about, plane = ABOUT[part]
+    case = cases.Case("real_parts", short_name(part), title="%s (%s)" % (title, part), about=about,
+                      premeshed="nothing; of the variant that keeps them, the triangles of the file"
+                      if PARTS[part] is open_stl else "nothing: sizes come from curvature and gaps",
+                      measured="all volumes")
+    rows = (mesh_stl if PARTS[part] is open_stl else mesh_step)(case, part)
+    case.draw("surface", "Gmsh", "meshgrow", "--dim", "2", "--view", "iso")
+    case.draw("cut", "Gmsh", "meshgrow", "--plane", plane)
+    case.draw_histogram("Gmsh", "meshgrow", dim=3)
+    return rows, case.save()
 
 
 def show_table(rows):
     """Prints the numbers, a line for each part and variant."""
     print("\n%-15s %-8s | triangles  tetrahedra  ratio 99 %%    max  length/size  long  gamma |"
-          "   field  meshing" % ("part", "sizes"))
+          " meshgrow    Gmsh" % ("part", "sizes"))
     for (part, variant), row in rows.items():
         volume = row["volume"]
-        print("%-15s %-8s | %9d %11d %11.2f %6.2f %12.2f %3.0f %% %6.3f | %5.1f s  %5.1f s" % (
+        print("%-15s %-8s | %9d %11d %11.2f %6.2f %12.2f %3.0f %% %6.3f | %6.1f s %5.1f s" % (
             part, variant, row["surface"]["elements"], volume["elements"], volume["ratio_99"],
             volume["ratio_max"], volume["length_median"],
-            100 * volume["length_share_over_2"], volume["gamma_min"], *row["seconds"]))
+            100 * volume["length_share_over_2"], volume["gamma_min"], row["seconds"]["meshgrow"],
+            row["seconds"]["gmsh"]))
     print("\nratio: size of the larger of two neighbours over the smaller, of tetrahedra; "
           "length/size: edge length over\nthe size that meshgrow asks for, median; long: edges "
           "longer than twice that size; gamma: worst quality, 1 is\nbest; field: sampling, gaps "
@@ -183,11 +217,9 @@ def main():
     rows, pictures = {}, []
     for part in PARTS:
         print("-- %s" % part, flush=True)
-        made = mesh_stl(part) if PARTS[part] is open_stl else mesh_step(part)
-        rows.update(((part, variant), made[variant][0]) for variant in VARIANTS if variant in made)
-        pictures.append(tools.picture(
-            made["Gmsh"][1], made["meshgrow"][1], "real_parts_%s.png" % os.path.splitext(part)[0],
-            ("sizes from curvature by Gmsh", "default size functions of meshgrow"), *VIEWS[part]))
+        made, drawn = mesh_part(part)
+        rows.update(((part, variant), made[variant]) for variant in VARIANTS if variant in made)
+        pictures += drawn
     show_table(rows)
     tools.show_files(pictures)
     gmsh.finalize()
