@@ -24,7 +24,7 @@ install_packages() {
     libeigen3-dev libcli11-dev nlohmann-json3-dev libxxhash-dev libgtest-dev
     gmsh libgmsh-dev gmsh-doc python3-gmsh python3-numpy python3-pytest python3-venv
     libglu1-mesa libxcursor1 libxfixes3 libxft2 libxinerama1
-    xvfb xauth libgl1-mesa-dri fonts-dejavu-core "${extra_packages[@]}")
+    xvfb xauth libgl1-mesa-dri fonts-dejavu-core chromium "${extra_packages[@]}")
   local missing=()
   local package
   for package in "${wanted[@]}"; do
@@ -50,13 +50,13 @@ install_packages() {
 make_python() {
   python_debian=/usr/bin/python3
   python_newest=$build/venv/bin/python
-  local complete=$build/venv/complete-2  # another number when other packages are wanted
+  local complete=$build/venv/complete-3  # another number when other packages are wanted
   if [ ! -e "$complete" ]; then
     say "Installing the newest Gmsh from PyPI into $build/venv"
     mkdir -p "$build"
     "$python_debian" -m venv "$build/venv" &&
       "$build/venv/bin/pip" install --quiet --disable-pip-version-check gmsh numpy pytest pillow \
-        pygmsh meshio distributed ||
+        pygmsh meshio distributed matplotlib jinja2 ||
       fail "the newest gmsh could not be installed from PyPI."
     touch "$complete"
   fi

@@ -25,6 +25,12 @@ PICTURES_WANTED = os.environ.get("MESHGROW_EXAMPLES_PICTURES") != "0"
 PICTURE_KINDS = ("surface", "cut", "histogram")
 
 
+def known(values):
+    """The same dictionary with None for numbers that are none, which JSON cannot hold."""
+    return {name: None if isinstance(value, float) and not math.isfinite(value) else value
+            for name, value in values.items()}
+
+
 class Case:
     """One model of an example.
 
@@ -51,13 +57,13 @@ class Case:
         seconds: {"gmsh": …, "meshgrow": …} where it was not made by field.generate()
         facts:   more numbers or words for the table, {"lines of input": 6, …}
         """
-        statistics = field.statistics() if field is not None else {"functions": []}
+        # Unknown seconds are left open on the page.
+        statistics = field.statistics() if field is not None else {"functions": [], "seconds": {}}
         self.record["variants"].append({
             "name": name, "title": title, "mesh": os.path.basename(mesh),
             "lines": [function["text"] for function in statistics["functions"]],
-            "report": {key: None if isinstance(value, float) and math.isnan(value) else value
-                       for key, value in report.items()},
-            "seconds": seconds or statistics["seconds"], "facts": facts or {}})
+            "report": known(report), "seconds": known(seconds or statistics["seconds"]),
+            "facts": known(facts or {})})
 
     def draw(self, kind, before, after, *options, caption=""):
         """Renders the meshes of two variants side by side, one camera and one colour scale.
