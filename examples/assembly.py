@@ -75,8 +75,8 @@ def main():
     gmsh.initialize()
     case = cases.Case(
         "assembly", "bolts", title="Plates around finely meshed bolts",
-        about="A real assembly of 18 volumes. The bolts are meshed first; the plate and the brackets "
-        "share faces with them. Left to Gmsh, the plates' sizes jump beside the bolts; with a mesh "
+        about="A real assembly of 18 volumes. The bolts are meshed first; the plate and the "
+        "brackets share faces with them. Left to Gmsh, the plates' sizes jump beside the bolts; with a mesh "
         "size function on the shared faces, they grow from them.",
         premeshed="the bolts, with a fixed size of %g mm" % BOLT_SIZE,
         measured="the plate and the brackets")
@@ -88,8 +88,8 @@ def main():
     case.draw("surface", "without", "with", "--dim", "2", "--view", "-55,0,-30",
               caption="The surfaces of all volumes.")
     case.draw("cut", "without", "with", "--plane", "0,75,0,0,-1,0", "--focus", "33,75,15,33",
-              caption="Cut along the axis of a bolt, the red column left of the middle. The scale of "
-              "colours is that of the whole assembly.")
+              caption="Cut along the axis of a bolt, the red column left of the middle. The scale "
+              "of colours is that of the whole assembly.")
     case.draw_histogram("without", "with", 3, [tag for _, tag in plates],
                         caption="The plate and the brackets.")
     tools.show(dict(sorted(rows.items(), key=lambda row: row[0].split(",")[0], reverse=True)),

@@ -89,7 +89,8 @@ def main():
               ",".join(str(tag) for _, tag in common),
               caption="The common faces: their mesh was there first and is the same in both.")
     case.draw("cut", "without", "with", "--plane", "0,0,0,0,0,1",
-              caption="Cut across the middle: left, sizes jump at the fine corner, the lower left one.")
+              caption="Cut across the middle. Left, the outer volume is coarse a few layers beside "
+              "the common faces; right, its sizes grow from layer to layer.")
     case.draw_histogram("without", "with", 3, [outer[1]], caption="The outer volume.")
     tools.show(dict(sorted(rows.items(), key=lambda row: row[0].split(",")[0], reverse=True)),
                paths + case.save())

@@ -84,7 +84,7 @@ class Case:
                    *of_these)
 
     def save(self):
-        """Writes the case for the page, complete or not at all; returns the paths of its pictures."""
+        """Writes the case, complete or not at all; returns the paths of its pictures."""
         path = os.path.join(OUT, self._file(".case.json"))
         with open(path + ".part", "w", encoding="utf-8") as file:
             json.dump(self.record, file, indent=1, ensure_ascii=False, allow_nan=False)

@@ -48,5 +48,4 @@ def fact(value):
         return count(value) if isinstance(value, int) else str(value)
     if abs(value) >= 1000:
         return count(value)
-    text = "%.3g" % value
-    return ratio(value) if 1 <= abs(value) < 100 else text
+    return "%.2f" % value if 1 <= abs(value) < 100 else "%.3g" % value

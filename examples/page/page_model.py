@@ -10,11 +10,6 @@ from picture_file import png_size
 EXAMPLES = Path(os.path.abspath(__file__)).parent.parent
 SOURCE_ENDINGS = (".py", ".geo", ".cpp")
 PICTURE_HEADINGS = {"surface": "Surface", "cut": "Cut", "histogram": "Element sizes"}
-PICTURE_CAPTIONS = {
-    "surface": "",
-    "cut": "",
-    "histogram": "Share of the elements over their size.",
-}
 # Which picture of a case is shown at the top, the first one that there is.
 THUMBNAIL_KINDS = ("cut", "surface", "histogram")
 
@@ -22,10 +17,10 @@ THUMBNAIL_KINDS = ("cut", "surface", "histogram")
 REPORT_COLUMNS = (
     ("elements", "elements", number_text.count, None, "of what is measured: see above the table"),
     ("ratio, max", "ratio_max", number_text.ratio, min,
-     "size of the larger of two neighbours over the smaller, the largest in the mesh; 1 is no jump"),
+     "size of the larger of two neighbours over the smaller, at most; 1 is no jump"),
     ("ratio, 99\u00a0%", "ratio_99", number_text.ratio, min,
-     "99 % of the neighbours have a smaller ratio; with a growth rate of 1.2, 1.2 to 1.35 is what the "
-     "irregularity of a good mesh allows"),
+     "99 % of the neighbours have a smaller ratio; with a growth rate of 1.2, 1.2 to 1.35 is what "
+     "the irregularity of a good mesh allows"),
     ("length/size", "length_median", number_text.ratio, None,
      "edge length over the size asked for there, the median; 1 is as asked for"),
     ("good, in\u00a0%", "length_share_good", number_text.percent, None,
@@ -76,10 +71,10 @@ def new_anchor(text, taken):
 
 
 def sources(example, out):
-    """Returns the files of an example; only what lies beside the page is linked, to travel with it."""
-    names = [example + ending for ending in SOURCE_ENDINGS if (EXAMPLES / (example + ending)).exists()]
+    """Returns the files of an example; linked if they are in the folder above the page."""
+    names = [example + ending for ending in SOURCE_ENDINGS]
     return [{"name": name, "link": "../" + name if (out.parent / name).exists() else None}
-            for name in names]
+            for name in names if (EXAMPLES / name).exists()]
 
 
 def describe_case(record, out, anchors):
@@ -121,8 +116,8 @@ def describe_variant(variant, all_variants, fact_names, out):
 def describe_picture(picture, record, out):
     """Returns one picture; that it is there is checked by who looks at the page."""
     heading = PICTURE_HEADINGS[picture["kind"]]
-    caption = picture.get("caption") or PICTURE_CAPTIONS[picture["kind"]]
+    caption = picture.get("caption") or ""
     path = out / picture["file"]
     return {"file": picture["file"], "heading": heading, "caption": caption,
             "size": png_size(path) if path.exists() else None,
-            "alt": "%s of the meshes, before and after: %s. %s" % (heading, record["title"], caption)}
+            "alt": "%s, before and after: %s. %s" % (heading, record["title"], caption)}

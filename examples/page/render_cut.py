@@ -20,8 +20,8 @@ from pathlib import Path
 
 # The first of them says if numpy is missing.
 from environment import import_gmsh, import_pillow, restart_under_xvfb_if_needed
-from arguments import (OneSentenceParser, join_negative_values, parse_focus, parse_plane, parse_tags,
-                       parse_view, parse_zoom)
+from arguments import (OneSentenceParser, join_negative_values, parse_focus, parse_plane,
+                       parse_tags, parse_view, parse_zoom)
 from camera import choose_camera
 from composition import compose
 from errors import RenderError

@@ -10,8 +10,8 @@ from pathlib import Path
 
 PATIENCE = 300  # seconds; it takes one or two
 
-# Runs before anything of the page, so that errors of its scripts and pictures are heard; writes what
-# was found where --dump-dom shows it.
+# Runs before anything of the page, so that errors of its scripts and pictures are heard; writes
+# what was found where --dump-dom shows it.
 LISTENER = """
 <base href="%s">
 <script>
@@ -68,8 +68,8 @@ def look_at(page, folder):
         [program(), "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
          "--no-first-run", "--disable-background-networking", "--disable-extensions",
          "--user-data-dir=%s" % (folder / "profile"), "--allow-file-access-from-files",
-         "--enable-logging=stderr", "--v=0", "--virtual-time-budget=10000", "--window-size=1300,2000",
-         "--dump-dom", copy.as_uri()],
+         "--enable-logging=stderr", "--v=0", "--virtual-time-budget=10000",
+         "--window-size=1300,2000", "--dump-dom", copy.as_uri()],
         # As root, with no home or the home of another: Chromium's files are all in the folder.
         env=dict(os.environ, HOME=str(folder), XDG_CONFIG_HOME=str(folder / "config"),
                  XDG_CACHE_HOME=str(folder / "cache"), XDG_RUNTIME_DIR=str(folder)),
