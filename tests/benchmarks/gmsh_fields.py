@@ -5,10 +5,10 @@ Run it with each Python whose Gmsh is to be measured, with meshgrow on the path:
     PYTHONPATH=build/python python3 tests/benchmarks/gmsh_fields.py             Markdown tables
     PYTHONPATH=build/python python3 tests/benchmarks/gmsh_fields.py --quick     small models
 
-Two models: a sphere (r = 1) meshed beforehand from 0.03 to 0.15, in a box of side 6; and the boxes of
-examples/figure8.py, whose common faces are meshed beforehand from 0.08 to 0.45. Measured is the outer
-volume. In all rows the faces are the same and kept, the mesher is 3D Delaunay, nothing is larger
-than 2, and the sizes compared with are those of growth 1.2. Each row is a process of its own: its
+Two models: a sphere (r = 1) meshed beforehand from 0.03 to 0.15, in a box of side 6; and the boxes
+of examples/figure8.py, whose common faces are meshed beforehand from 0.08 to 0.45. Measured is the
+outer volume. In all rows the faces are the same and kept, the mesher is 3D Delaunay, and nothing is
+larger than 2. Sizes are compared with those of growth 1.2. Each row is a process of its own: its
 lines of .geo are all that differs. The columns:
 
     ratio max, 99 %   larger over smaller size of neighbours; 99 % of the pairs are below
@@ -17,8 +17,8 @@ lines of .geo are all that differs. The columns:
     seconds           of meshing, once the faces are there
     lines             of input
 
-The Threshold is tuned to the model: of five sizes on the faces, from their smallest element to their
-largest, the one with the lowest 99 % ratio, at the slope of growth 1.2.
+The Threshold is tuned to the model: of five sizes on the faces, from their smallest element to
+their largest, the one with the lowest 99 % ratio, at the slope of growth 1.2.
 """
 
 import argparse
@@ -93,7 +93,8 @@ EXTEND_RATIO = ["Field[1] = Extend;", "Field[1].VolumesList = {{{volumes}}};",
                 "Background Field = 1;", NO_EXTENSION]
 AUTOMATIC = ["Field[1] = AutomaticMeshSizeField;", "Field[1].hMax = {limit};",
              "Field[1].gradation = {growth};", "Background Field = 1;", NO_EXTENSION]
-SIZE_FUNCTION = "mesh source Surface{{{faces}}} attach Volume{{{volumes}}} growth {growth} limit {limit}"
+SIZE_FUNCTION = ("mesh source Surface{{{faces}}} attach Volume{{{volumes}}} "
+                 "growth {growth} limit {limit}")
 
 STEPS = 5
 WAYS = {
@@ -219,7 +220,8 @@ def rows_of(name):
             thresholds[way] = answer
             best = min(thresholds.values(), key=lambda row: row["ratio_99"])
             size = next(line for line in best["lines"] if "SizeMin" in line)
-            title = "`Distance` and `Threshold`, tuned: `SizeMin` %s" % size.split("=")[1].strip(" ;")
+            title = ("`Distance` and `Threshold`, tuned: `SizeMin` %s"
+                     % size.split("=")[1].strip(" ;"))
             rows = {way: row for way, row in rows.items() if "Threshold" not in way}
             rows[title] = best
         else:

@@ -2,8 +2,8 @@
 
     PYTHONPATH=build/python python3 tests/benchmarks/growth_rates.py        a Markdown table
 
-A cube of side 4 grows from one face, meshed by triangles of size 0.05, to the limit 0.5, calibrated,
-by 3D Delaunay. Tetrahedra are counted in all and for each triangle of the face.
+A cube of side 4 grows from one face, meshed by triangles of size 0.05, to the limit 0.5,
+calibrated, by 3D Delaunay. Tetrahedra are counted in all and for each triangle of the face.
 """
 
 import gmsh
