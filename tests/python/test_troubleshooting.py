@@ -1,4 +1,4 @@
-"""The symptoms of README.md's "Troubleshooting" come from the causes named there, and the remedies help."""
+"""Symptoms of README.md's "Troubleshooting": their causes make them, the remedies help."""
 
 import os
 import pathlib
