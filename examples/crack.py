@@ -1,11 +1,11 @@
 """A crack: an inclined ellipse inside a block, finely meshed first; the volume grows from it.
 
-Stresses are singular at the front of a crack, so its surface is meshed first, with small triangles at
-the front and larger ones in its middle. The surface is embedded in the block: tetrahedra have their
-faces on it, on both sides. By itself, Gmsh blends the sizes of these triangles with those of the
-block's far faces, which are large, so that half a dozen elements lead from the one to the other. A
-mesh size function with the crack as its source lets the block grow from the triangles at a chosen
-rate.
+Stresses are singular at the front of a crack, so its surface is meshed first, with small triangles
+at the front and larger ones in its middle. The surface is embedded in the block: tetrahedra have
+their faces on it, on both sides. By itself, Gmsh blends the sizes of these triangles with those of
+the block's far faces, which are large, so that half a dozen elements lead from the one to the
+other. A mesh size function with the crack as its source lets the block grow from the triangles at a
+chosen rate.
 
 crack.geo and crack.cpp do the same, step by step. Lengths are in millimetres.
 """
@@ -84,9 +84,8 @@ def main():
     gmsh.initialize()
     case = cases.Case(
         "crack", "block", title="A crack in a block",
-        about="The crack is embedded in the block. Gmsh blends the small sizes of its front with the "
-              "large ones of the block's far faces: a few elements, and the front is left behind. "
-              "With a mesh size function on the crack, the block grows from its triangles, on both "
+        about="The crack is embedded in the block. Gmsh blends the small sizes of its front "
+              "with the large ones of the block's far faces, which a few elements lead to. With a mesh size function on the crack, the block grows from its triangles, on both "
               "sides, at the rate that was asked for.",
         premeshed="the crack: %g mm at its front, growing by %g to %g mm in its middle"
                   % (FRONT_SIZE, CRACK_GROWTH, CRACK_LIMIT),

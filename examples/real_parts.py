@@ -74,14 +74,14 @@ ABOUT = {
         "0,172.3,0,0,0,1"),
     "as1-tu-203.stp": (
         "An assembly",
-        "18 volumes, some as thin as a large element. Gmsh's sizes from curvature jump from the bolts "
-        "to the flat faces beside them, and leave one element across a plate; the defaults grow from "
+        "18 volumes, some as thin as a large element. Gmsh's sizes from curvature jump from the "
+        "bolts to the flat faces beside them, one or two elements across a plate; the defaults grow from "
         "the bolts, and put three elements in each gap.",
         "0,75,0,0,-1,0"),
     "t13_data.stl": (
         "A scanned surface, meshed anew",
-        "Triangles without CAD, cut into patches and meshed anew. Kept as they are, they are too long "
-        "and thin for size functions to help: Gmsh finds no place for nodes between them.",
+        "Triangles without CAD, cut into patches and meshed anew. Kept as they are, they are too "
+        "long and thin for size functions to help: Gmsh finds no place for nodes between them.",
         "0,0,-176,0,-1,0")}
 
 
@@ -205,8 +205,8 @@ def show_table(rows):
             row["seconds"]["gmsh"]))
     print("\nratio: size of the larger of two neighbours over the smaller, of tetrahedra; "
           "length/size: edge length over\nthe size that meshgrow asks for, median; long: edges "
-          "longer than twice that size; gamma: worst quality, 1 is\nbest; field: sampling, gaps "
-          "and grids; meshing: the rest\n")
+          "longer than twice that size; gamma: worst quality, 1 is\nbest; meshgrow and Gmsh: the "
+          "seconds spent in each\n")
     for variant, meaning in VARIANTS.items():
         print("%9s: %s" % (variant, meaning))
 

@@ -5,10 +5,9 @@ put tetrahedra on. So it is meshed anew once, as in Gmsh's tutorial t13: the tri
 parametrised patches, with sizes from the curvature of what was scanned. The result is written as an
 STL file and read back, as what a scanner's own software hands over: one discrete surface.
 
-From then on the surface is kept, node by node, and a box of air around it is meshed. By itself, Gmsh
-gets from its small triangles to the large ones of the box within a few elements; a mesh size
-function with the surface as its source grows at a chosen rate.
-"""
+From then on the surface is kept, node by node, and a box of air around it is meshed. By itself,
+Gmsh gets from its small triangles to the large ones of the box within a few elements; a mesh size
+function with the surface as its source grows at a chosen rate. """
 
 import math
 import os
@@ -51,7 +50,7 @@ def remesh_scan(name):
 
 
 def open_scan(path):
-    """Reads an STL file as one discrete surface in a box of air; returns the surface and the air."""
+    """Reads an STL file as a discrete surface in a box of air; returns the surface and the air."""
     gmsh.merge(path)
     (_, surface), = gmsh.model.getEntities(2)
     corners = np.reshape(gmsh.model.getBoundingBox(2, surface), (2, 3))
@@ -102,8 +101,8 @@ def main():
         about="The surface is discrete, without CAD, and stays as it is, node by node. By itself, "
               "Gmsh gets from its triangles to those of the box within a few elements. With a mesh "
               "size function, the air grows from them at the rate that was asked for.",
-        premeshed="the whole surface: t13_data.stl, meshed anew by its curvature, from %g to %g, and "
-                  "read back from an STL file" % (SMALLEST, LARGEST),
+        premeshed="the whole surface: t13_data.stl, meshed anew by its curvature, from %g to %g, "
+                  "and read back from an STL file" % (SMALLEST, LARGEST),
         measured="the air")
     path = remesh_scan("t13_data.stl")
     rows = {"without": make_mesh(case, path, "without", "air by Gmsh", False),

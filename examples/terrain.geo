@@ -2,8 +2,8 @@
 //
 //     meshgrow mesh terrain.geo -3 -o terrain.msh
 //
-// As terrain.py, which explains it and has written terrain_surface.msh: a discrete surface with four
-// curves between four points. Lengths are in metres.
+// As terrain.py, which explains it and has written terrain_surface.msh: a discrete surface with
+// four curves between four points. Lengths are in metres.
 
 Merge "terrain_surface.msh";
 DefineConstant[

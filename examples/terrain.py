@@ -1,8 +1,8 @@
 """The air above a terrain: the measured triangles are kept, the volume grows from them.
 
-A terrain comes as triangles (terrain_stl_data.stl of Gmsh's documentation): 12 m at the summit, 230 m
-in the plain, 2.6 km by 2.5 km. They are the bottom of the mesh as they are, so that nothing of what
-was measured is lost. A box of air is put on them, for wind: four upright faces, and a top at a
+A terrain comes as triangles (terrain_stl_data.stl of Gmsh's documentation): 12 m at the summit, 230
+m in the plain, 2.6 km by 2.5 km. They are the bottom of the mesh as they are, so that nothing of
+what was measured is lost. A box of air is put on them, for wind: four upright faces, and a top at a
 constant height. Gmsh's own sizes get from the bottom to the top within a few elements; a mesh size
 function with the terrain as its source lets faces and air grow from the triangles at a chosen rate.
 
@@ -97,8 +97,9 @@ def build_air(terrain, rim):
         above[point] = geo.addPoint(x, y, TOP)
         upright[point] = geo.addLine(point, above[point])
     edges = {curve: geo.addLine(above[a], above[b]) for curve, (a, b) in rim.items()}
-    sides = [geo.addPlaneSurface([geo.addCurveLoop([curve, upright[b], -edges[curve], -upright[a]])])
+    loops = [geo.addCurveLoop([curve, upright[b], -edges[curve], -upright[a]])
              for curve, (a, b) in rim.items()]
+    sides = [geo.addPlaneSurface([loop]) for loop in loops]
     top = geo.addPlaneSurface([geo.addCurveLoop(list(edges.values()))])
     air = geo.addVolume([geo.addSurfaceLoop([terrain, top, *sides])])
     geo.synchronize()
@@ -135,8 +136,8 @@ def main():
     gmsh.initialize()
     case = cases.Case(
         "terrain", "air", title="The air above a terrain",
-        about="The triangles of the terrain are kept as they were measured, small at the summit and "
-              "large in the plain. By itself, Gmsh gets from the summit to the top within a few "
+        about="The triangles of the terrain are kept as they were measured, small at the summit "
+              "and large in the plain. By itself, Gmsh gets from the summit to the top within a few "
               "elements. With a mesh size function, the air grows from the terrain.",
         premeshed="the terrain, a discrete surface from an STL file",
         measured="the air")

@@ -1,4 +1,4 @@
-"""The air above a terrain: a volume grows from a discrete surface, which stays as it was measured."""
+"""The air above a terrain: it grows from a discrete surface, which stays as it was measured."""
 
 import os
 import shutil
