@@ -85,7 +85,8 @@ def main():
     case = cases.Case(
         "crack", "block", title="A crack in a block",
         about="The crack is embedded in the block. Gmsh blends the small sizes of its front "
-              "with the large ones of the block's far faces, which a few elements lead to. With a mesh size function on the crack, the block grows from its triangles, on both "
+              "with the large ones of the block's far faces, which a few elements lead to. "
+              "With a mesh size function on the crack, the block grows from its triangles, on both "
               "sides, at the rate that was asked for.",
         premeshed="the crack: %g mm at its front, growing by %g to %g mm in its middle"
                   % (FRONT_SIZE, CRACK_GROWTH, CRACK_LIMIT),

@@ -75,8 +75,8 @@ ABOUT = {
     "as1-tu-203.stp": (
         "An assembly",
         "18 volumes, some as thin as a large element. Gmsh's sizes from curvature jump from the "
-        "bolts to the flat faces beside them, one or two elements across a plate; the defaults grow from "
-        "the bolts, and put three elements in each gap.",
+        "bolts to the flat faces beside them, one or two elements across a plate; the defaults grow "
+        "from the bolts, and put three elements in each gap.",
         "0,75,0,0,-1,0"),
     "t13_data.stl": (
         "A scanned surface, meshed anew",

@@ -137,8 +137,8 @@ def main():
     case = cases.Case(
         "terrain", "air", title="The air above a terrain",
         about="The triangles of the terrain are kept as they were measured, small at the summit "
-              "and large in the plain. By itself, Gmsh gets from the summit to the top within a few "
-              "elements. With a mesh size function, the air grows from the terrain.",
+              "and large in the plain. By itself, Gmsh gets from the summit to the top within a "
+              "few elements. With a mesh size function, the air grows from the terrain.",
         premeshed="the terrain, a discrete surface from an STL file",
         measured="the air")
     measured = read_triangles("terrain_stl_data.stl")
