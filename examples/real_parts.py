@@ -75,13 +75,13 @@ ABOUT = {
     "as1-tu-203.stp": (
         "An assembly",
         "18 volumes, some as thin as a large element. Gmsh's sizes from curvature jump from the "
-        "bolts to the flat faces beside them, one or two elements across a plate; the defaults grow "
-        "from the bolts, and put three elements in each gap.",
+        "bolts to the flat faces beside them, one or two elements across a plate; the defaults "
+        "grow from the bolts, and put three elements in each gap.",
         "0,75,0,0,-1,0"),
     "t13_data.stl": (
         "A scanned surface, meshed anew",
         "Triangles without CAD, cut into patches and meshed anew. Kept as they are, they are too "
-        "long and thin for size functions to help: Gmsh finds no place for nodes between them.",
+        "long and thin for size functions to help: Gmsh finds no place for nodes of its own.",
         "0,0,-176,0,-1,0")}
 
 
