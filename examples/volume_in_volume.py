@@ -10,9 +10,20 @@ the mesh of the common faces, whoever made it so fine, into volume.2 (Figures 8 
 The paper's workaround is to attach the functions crosswise, those of each volume to the other too.
 It knows what was asked for on the common faces, not the mesh that came out.
 
+In either order of the volumes (ORDERS): one volume is meshed with its faces, and then the other,
+which finds the common faces meshed and keeps them. As in the paper, all functions are there from
+the beginning, and those of both volumes act on the common faces, which bound both. So the common
+faces are as fine in either order, and in either order it is volume.2 whose own functions do not
+know why. In the paper, volume.1 has to be meshed first for the mesh size function to find a mesh.
+Here it need not: faces are meshed before any volume, and read in between, so that volume.2 may be
+meshed first as well. (What no function can do is to undo a coarse mesh: were the functions of
+volume.1 not there before volume.2 and the common faces are meshed, its gap would have to fit to
+triangles that are larger than it asks for.)
+
 "similar": a cube with rounded edges inside a larger one, the same gap all around, so that sizes on
 the common faces are nearly constant. "not similar": an ellipsoid in a box, its tip close to one
-wall; gap, curvature and sizes vary along the common face.
+wall; gap, curvature and sizes vary along the common face. volume_in_volume.geo is "new"
+(at once).
 """
 
 import itertools
@@ -23,6 +34,7 @@ import meshgrow
 import numpy as np
 
 import example_tools as tools
+from page import cases
 
 COARSE = float(tools.os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 CELLS_PER_GAP = 3 / COARSE
@@ -37,6 +49,11 @@ VARIANTS = {
 }
 
 
+TITLES = {"old": "old: proximity and curvature", "crosswise": "crosswise",
+          "new": "new: and a mesh size function"}
+ORDERS = ("volume.1 first", "volume.2 first")
+
+
 def build_similar():
     """Two rounded cubes, a gap of 1 between them; returns (volume.1, volume.2, common faces)."""
     inside, outside = tools.rounded_box(8, 2), tools.rounded_box(10, 3)
@@ -49,13 +66,14 @@ def build_similar():
 def build_not_similar():
     """An ellipsoid in a box; its tip is at x = 8, the wall at 8.6; returns the same."""
     occ = gmsh.model.occ
-    shape = (3, occ.addSphere(0, 0, 0, 1))
-    occ.dilate([shape], 0, 0, 0, 8, 5, 5)
+    shape = (3, occ.addSphere(0, 0, 0, 5))
+    occ.dilate([shape], 0, 0, 0, 1.6, 1, 1)
     inner, outer, common = tools.enclose(shape, (-11, -6.5, -6.5), (8.6, 6.5, 6.5))
     return outer, inner, common
 
 
 MODELS = {"similar": build_similar, "not similar": build_not_similar}
+FIGURES = {"similar": "Figures 2 and 8", "not similar": "Figures 3 and 9"}
 
 
 def make_field(variant, outer, inner, common, **options):
@@ -96,13 +114,28 @@ def jump_behind(faces, volume):
     return float(np.mean(ratios))
 
 
-def make_mesh(model, variant):
-    """Meshes one variant; returns the numbers of the table and the file."""
+def mesh_only(volume, other, field):
+    """Meshes a volume and its faces; the other one stays, or is again, without a mesh."""
+    field.generate(3)
+    own = set(tools.surfaces_of([other])) - set(tools.surfaces_of([volume]))
+    curves = set(tools.boundary(own)) - set(tools.boundary(tools.surfaces_of([volume])))
+    gmsh.model.mesh.clear([other])
+    if own:
+        gmsh.model.mesh.clear(sorted(own))
+        gmsh.model.mesh.clear(sorted(curves))
+
+
+def make_mesh(model, variant, case, order=None):
+    """Meshes one variant, at once or in an order, and adds it to the case; returns its numbers."""
     gmsh.model.add("volume_in_volume")
     outer, inner, common = MODELS[model]()
     field = make_field(variant, outer, inner, common, evaluator="grid")  # as in the paper
+    if order is not None:
+        first, later = (outer, inner) if order == "volume.1 first" else (inner, outer)
+        mesh_only(first, later, field)
+        field = make_field(variant, outer, inner, common, evaluator="grid")
     begin = time.perf_counter()
-    field.generate(3)
+    field.generate(3)  # what has a mesh keeps it
     seconds = time.perf_counter() - begin
     print("   %.1f s" % seconds, flush=True)
     asked = field
@@ -111,14 +144,60 @@ def make_mesh(model, variant):
         asked = make_field("new", outer, inner, common, evaluator="exact")
         asked.refresh()
     grids = [group["grid"] for group in field.statistics()["groups"] if group["grid"]]
+    grid_bytes = sum(grid["bytes"] for grid in grids)
     row = {"volume.1": meshgrow.report(3, [outer], asked),
            "volume.2": meshgrow.report(3, [inner], asked),
-           "jump": jump_behind(common, inner), "seconds": seconds,
-           "grid_bytes": sum(grid["bytes"] for grid in grids),
+           "jump": jump_behind(common, inner), "jump outside": jump_behind(common, outer),
+           "seconds": seconds, "grid_bytes": grid_bytes,
            "grid_seconds": sum(grid["seconds"] for grid in grids)}
-    path = tools.write("volume_in_volume_%s_%s.msh" % (model.replace(" ", "_"), variant))
+    name = variant if order is None else "%s, %s" % (variant, order)
+    path = tools.write("volume_in_volume_%s_%s.msh" % (
+        model.replace(" ", "_"), name.replace(", ", "_").replace(" ", "_")))
+    case.add(name, TITLES[variant] if order is None else name, mesh=path, report=row["volume.2"],
+             field=field, facts={"jump at the common faces": round(row["jump"], 2),
+                                 "grids, kB": round(grid_bytes / 1e3)})
+    row["common"], row["inner"] = [tag for _, tag in common], inner[1]
     gmsh.model.remove()
-    return row, path
+    return row
+
+
+def make_case(model):
+    """Meshes all variants of a model; returns their numbers and the pictures."""
+    case = cases.Case(
+        "volume_in_volume", model.replace(" ", "_"),
+        title="A volume in a volume, %s" % model, figures=FIGURES[model],
+        measured="volume.2, the inner volume",
+        about="The narrow gap of the outer volume makes the common faces fine. The functions of "
+              "the inner volume do not know it, and its sizes jump behind these faces, whichever "
+              "volume is meshed first; a mesh size function grows from the faces as they are.",
+        premeshed="the common faces, by the size functions of both volumes")
+    rows = {}
+    for variant in VARIANTS:
+        for order in (None, *ORDERS) if variant != "crosswise" else (None,):
+            print("-- %s volumes: %s, %s" % (model, variant, order or "at once"), flush=True)
+            rows[(model, variant, order) if order else (model, variant)] = make_mesh(
+                model, variant, case, order)
+    row = rows[model, "new"]
+    case.draw("cut", "old", "new", "--plane", "0,0,0,0,-1,0")
+    case.draw("cut", "old, volume.2 first", "new, volume.2 first", "--plane", "0,0,0,0,-1,0")
+    case.draw("surface", "old", "new", "--dim", "2", "--view", "iso",
+              "--volumes", ",".join(map(str, row["common"])))
+    case.draw_histogram("old", "new", dim=3, entities=[row["inner"]])
+    return rows, case.save()
+
+
+def show_orders(rows):
+    """Prints the numbers of both orders."""
+    print("\nVolume by volume, in either order; the jump is that at the common faces")
+    print("%11s %4s %15s | volume.2  jump  ratio 99 %%  long | volume.1  jump  ratio 99 %%" % (
+        "", "", ""))
+    for model, variant, order in (key for key in rows if len(key) == 3):
+        row = rows[model, variant, order]
+        inside, outside = row["volume.2"], row["volume.1"]
+        print("%11s %4s %15s | %8d %5.2f %11.2f %3.0f %% | %8d %5.2f %11.2f" % (
+            model, variant, order, inside["elements"], row["jump"], inside["ratio_99"],
+            100 * inside["length_share_over_2"], outside["elements"], row["jump outside"],
+            outside["ratio_99"]))
 
 
 def show_table(rows):
@@ -151,15 +230,11 @@ def main():
     tools.start("volume_in_volume")
     rows, pictures = {}, []
     for model in MODELS:
-        paths = {}
-        for variant in VARIANTS:
-            print("-- %s volumes: %s" % (model, variant), flush=True)
-            rows[model, variant], paths[variant] = make_mesh(model, variant)
-        pictures.append(tools.picture(
-            paths["old"], paths["new"], "volume_in_volume_%s.png" % model.replace(" ", "_"),
-            ("old: proximity and curvature", "new: and a mesh size function"),
-            "--plane", "0,0,0,0,-1,0"))
+        of_model, drawn = make_case(model)
+        rows.update(of_model)
+        pictures += drawn
     show_table(rows)
+    show_orders(rows)
     tools.show_files(pictures)
     gmsh.finalize()
     return rows
