@@ -1,10 +1,10 @@
-// Two faces side by side, as two_faces.py with a mesh size function: Figures 10 and 11 of the paper.
+// Two faces side by side, as "with" of two_faces.py: Figures 10 and 11 of the paper.
 //
 //     meshgrow mesh two_faces.geo -2
 //     meshgrow mesh two_faces.geo -2 -setnumber from_vertex 1 -setnumber right_face 2
 //
-// The left face is mapped, so that the common edge gets as many elements as the left edge; the right
-// face grows from the mesh that is there. Only the last lines are about sizes.
+// The left face is mapped, so that the common edge gets as many elements as the left edge; the
+// right face grows from the mesh that is there. Only the last lines are about sizes.
 
 DefineConstant[
   from_vertex = {0, Choices{0="left edge", 1="upper left vertex"}, Name "Parameters/Sizes from"},

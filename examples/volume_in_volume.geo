@@ -3,8 +3,8 @@
 //     meshgrow mesh volume_in_volume.geo -3 --evaluator grid
 //     meshgrow mesh volume_in_volume.geo -3 --evaluator grid -setnumber not_similar 1
 //
-// Each volume has a proximity and a curvature size function of its own, with the paper's numbers; the
-// mesh of the common faces, made fine by the narrow gap of volume.1, grows on into volume.2.
+// Each volume has a proximity and a curvature size function of its own, with the paper's numbers;
+// the mesh of the common faces, made fine by the narrow gap of volume.1, grows on into volume.2.
 
 SetFactory("OpenCASCADE");
 DefineConstant[
