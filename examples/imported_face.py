@@ -13,8 +13,8 @@ boundary, made of splines, for the bend to begin with.
 
 A .msh and a .unv file have the boundary curves of A, an .stl and a .neu only triangles. Their
 corners are found here, and not by Gmsh's classifySurfaces, which leaves a segment of length zero on
-the boundary if it begins at a corner. Gmsh 4.8 writes .neu files, but cannot read them; newer ones
-read volumes, and faces only as the boundary conditions of a volume: it is thrown away here.
+the boundary if it begins at a corner. Gmsh before 4.12 writes .neu files, but cannot read them;
+later ones read volumes, and faces only as boundary conditions of one, which is thrown away here.
 """
 
 import collections
@@ -318,7 +318,7 @@ def make_case(shape, readable):
     for ending in endings:
         rows["with " + ending] = make_mesh(shape, ending, True, case)
     after = "with " + endings[0]
-    case.draw("surface", "without", after, "--dim", "2", "--view", "iso")
+    case.draw("surface", "without", after, "--dim", "2", "--view", "-60,0,30")
     case.draw("cut", "without", after, *view)
     case.draw_histogram("without", after, dim=3)
     return rows, case.save()
