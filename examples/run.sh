@@ -7,8 +7,8 @@ cd "$(dirname "$0")/.."
 . tests/setup.sh
 
 # In the order of the paper's figures; then real parts, then ways to use it.
-all=(airfoil volume_in_volume figure8 two_faces imported_face assembly real_parts terrain crack
-  earlier_run callbacks plain_gmsh with_pygmsh size_functions stock_gmsh_serve stock_gmsh_view
+all=(airfoil volume_in_volume figure8 two_faces imported_face assembly real_parts scanned_surface
+  terrain crack earlier_run callbacks plain_gmsh with_pygmsh size_functions stock_gmsh_serve stock_gmsh_view
   sweep_dask)
 export MESHGROW_EXAMPLES_OUT=${MESHGROW_EXAMPLES_OUT:-$PWD/examples/out}
 mkdir -p "$MESHGROW_EXAMPLES_OUT"
