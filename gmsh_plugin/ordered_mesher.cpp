@@ -469,6 +469,15 @@ void OrderedMesher::check_faces_stayed(const std::vector<Entity>& entities,
 }
 
 void OrderedMesher::refuse_empty(const LeftEmpty& left) const {
+  const auto discrete = std::find_if(
+      left.entities.begin(), left.entities.end(),
+      [](const Entity& entity) { return entity.dim == 3 && gmsh::is_discrete(entity); });
+  if (discrete != left.entities.end()) {
+    throw Error(entity_name(*discrete) +
+                " came with a mesh and has no geometry, and Gmsh meshes no such volume again: open "
+                "the geometry before the mesh, or put a volume on the surfaces in a model without "
+                "it.");
+  }
   const std::string reason = gmsh::last_error();
   throw Error("Gmsh could not mesh " + entity_names(left.entities) + " in " + left.pass_name +
               (reason.empty() ? "" : " (" + reason + ")") +

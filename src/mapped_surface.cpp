@@ -89,10 +89,15 @@ std::vector<Side> split_at_corners(const Loop& loop, const std::vector<int>& cor
 
 bool has_no_length(const Entity& curve, const Topology& topology) {
   const Box& box = topology.box(curve);
-  const double scale = box.isEmpty() ? 1.0 : 1.0 + box.max().norm();
-  // Gmsh's boxes are a tolerance of about 1e-7 larger than the entity.
-  return ends(curve, topology).size() == 1 && !box.isEmpty() &&
-         box.diagonal().norm() < 1e-6 * scale;
+  const std::set<int> own_ends = ends(curve, topology);
+  if (own_ends.size() != 1 || box.isEmpty()) {
+    return false;
+  }
+  // Of the end, too: the box of the pole of a stretched sphere is where it was before stretching.
+  const Box& end = topology.box({0, *own_ends.begin()});
+  const double reach = std::max(box.max().norm(), end.isEmpty() ? 0.0 : end.max().norm());
+  // Gmsh's boxes are a tolerance of about 1e-7 larger than the entity, times the stretching.
+  return box.diagonal().norm() < 1e-6 * (1.0 + reach);
 }
 
 std::vector<OppositeSides> opposite_sides(const MappedSurface& mapped, const Topology& topology,
