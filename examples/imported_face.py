@@ -46,11 +46,12 @@ Side = collections.namedtuple("Side", "curve start end nodes")
 
 def size_on_face(dim, tag, x, y, z, *proposed):
     """Fine around the point (1, 1) and along the edge y = 3."""
-    return COARSE * min(0.03 + 0.15 * math.hypot(x - 1, y - 1), 0.05 + 0.15 * (3 - y), 0.3)
+    around_point, along_edge = 0.03 + 0.15 * math.hypot(x - 1, y - 1), 0.05 + 0.15 * (3 - y)
+    return COARSE * min(around_point, along_edge, 0.3)
 
 
 def write_face_files():
-    """Makes A, a bent face, on a pad below it, meshes both, and writes A to a file of each format."""
+    """Makes A, a bent face, on a pad below it, meshes both, and writes A in each format."""
     gmsh.model.add("other program")
     occ = gmsh.model.occ
     profile = occ.addBSpline([occ.addPoint(x, 0, z) for x, z in
@@ -94,7 +95,7 @@ def triangles_of(face):
 
 
 def corner_paths(triangles, place):
-    """The boundary of the triangles as paths of nodes from corner to corner, one after the other."""
+    """The boundary of the triangles as paths of nodes from corner to corner, in their order."""
     # Undirected: triangles from a .neu look to either side.
     count = collections.Counter(
         frozenset(edge) for t in triangles for edge in zip(t, t[1:] + t[:1]))
@@ -265,6 +266,11 @@ def distance_moved(before, after):
     return max((np.linalg.norm(after - place, axis=1).min() for place in before), default=0.0)
 
 
+def mesh_path(shape, variant):
+    """Where a mesh is written."""
+    return os.path.join(tools.OUT, "imported_face_%s_%s.msh" % (shape, variant.replace(" .", "_")))
+
+
 def make_mesh(shape, ending, with_size_function, case):
     """Meshes the volume from A as a file has it; returns the numbers of the table."""
     name = "with %s" % ending if with_size_function else "without"
@@ -290,7 +296,7 @@ def make_mesh(shape, ending, with_size_function, case):
     row["moved"] = distance_moved(imported - now, now)
     row["same_triangles"] = collections.Counter(shape_of(face)) == collections.Counter(as_read)
     row["largest_asked"] = asked.exact_size(3, volume, sorted(now)).max()
-    path = tools.write("imported_face_%s_%s.msh" % (shape, name.replace(" .", "_")))
+    path = tools.write(os.path.basename(mesh_path(shape, name)))
     case.add(name, "mesh size function on A (%s)" % ending if with_size_function else "Gmsh alone",
              mesh=path, report=meshgrow.report(3, [(3, volume)], asked),
              field=asked if with_size_function else None, seconds=seconds,
@@ -306,7 +312,7 @@ def make_case(shape, readable):
     unread = [ending for ending in FORMATS if ending not in readable]
     case = cases.Case(
         "imported_face", shape, title=title, figures="Figures 6 and 12",
-        about="Face A, on top, comes from a file and is kept, node by node. Alone, Gmsh's sizes jump "
+        about="Face A, on top, comes from a file and is kept, node by node. Gmsh's own sizes jump "
               "below its fine places; with a mesh size function on A they grow by 1.2 all through "
               "the volume, as the limit of %g is never reached. The cut is at %s.%s" % (
                   SIZE_LIMIT, cut, " This Gmsh does not read %s." % ", ".join(unread)
@@ -318,7 +324,7 @@ def make_case(shape, readable):
     for ending in endings:
         rows["with " + ending] = make_mesh(shape, ending, True, case)
     after = "with " + endings[0]
-    case.draw("surface", "without", after, "--dim", "2", "--view", "-60,0,30")
+    case.draw("surface", "without", after, "--dim", "2", "--view", "300,0,30")
     case.draw("cut", "without", after, *view)
     case.draw_histogram("without", after, dim=3)
     return rows, case.save()
@@ -326,16 +332,16 @@ def make_case(shape, readable):
 
 def show_table(rows):
     """Prints the numbers, a line for each mesh."""
-    print("\n%-22s | tetrahedra  ratio 99 %%   max  length/size  long | nodes of A  moved  triangles"
-          "  largest size asked" % "volume")
+    print("\n%-22s | tetrahedra  ratio 99 %%   max  length/size  long | nodes of A  moved  "
+          "triangles  largest size asked" % "volume")
     for (shape, variant), row in rows.items():
         print("%-8s %-13s | %10d %11.2f %5.2f %12.2f %3.0f %% | %10d %6g  %9s  %18.2f" % (
             shape, variant, row["elements"], row["ratio_99"], row["ratio_max"],
             row["length_median"], 100 * row["length_share_over_2"], row["imported"], row["moved"],
             "same" if row["same_triangles"] else "CHANGED", row["largest_asked"]))
-    print("\nratio: size of the larger of two neighbours over the smaller; length/size: edge length "
-          "over the size asked\nfor, median; long: edges longer than twice that size; moved: the "
-          "farthest that a node of A is from where\nGmsh had it just after reading")
+    print("\nratio: size of the larger of two neighbours over the smaller; length/size: edge "
+          "length\nover the size asked for, median; long: edges longer than twice that size; "
+          "moved: the farthest that\na node of A is from where Gmsh had it just after reading")
 
 
 def main():
@@ -348,7 +354,7 @@ def main():
     for shape in SHAPES:
         made, pictures = make_case(shape, readable)
         rows.update(((shape, variant), row) for variant, row in made.items())
-        files += [os.path.join(tools.OUT, "imported_face_%s_without.msh" % shape), *pictures]
+        files += [mesh_path(shape, variant) for variant in made] + pictures
     show_table(rows)
     tools.show_files(files)
     gmsh.finalize()
