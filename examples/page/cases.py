@@ -13,6 +13,7 @@
 `save` writes <out>/<example>.<case>.case.json; make_page.py gathers them into index.html.
 """
 
+import itertools
 import json
 import math
 import os
@@ -23,6 +24,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 OUT = os.environ.get("MESHGROW_EXAMPLES_OUT", os.path.join(os.path.dirname(FOLDER), "out"))
 PICTURES_WANTED = os.environ.get("MESHGROW_EXAMPLES_PICTURES") != "0"
 PICTURE_KINDS = ("surface", "cut", "histogram")
+positions = itertools.count()  # of the cases of an example, in the order in which it makes them
 
 
 def known(values):
@@ -43,7 +45,7 @@ class Case:
     def __init__(self, example, name, title, about, premeshed, measured, figures=""):
         self.record = {"example": example, "name": name, "title": title, "figures": figures,
                        "about": about, "premeshed": premeshed, "measured": measured,
-                       "variants": [], "pictures": []}
+                       "position": next(positions), "variants": [], "pictures": []}
 
     def add(self, name, title, mesh, report, field=None, seconds=None, facts=None):
         """Adds a mesh of the case.

@@ -54,9 +54,13 @@ def describe(records, out):
 
 
 def case_order(record):
-    """Sorts by the first figure of the paper that a case is about; the others follow by name."""
+    """Sorts by the first figure of the paper that a case is about; the others follow by name.
+
+    Within an example, cases of one figure come as it makes them.
+    """
     figures = [int(digits) for digits in re.findall(r"\d+", record["figures"])]
-    return min(figures, default=1000), record["example"], record["name"]
+    return (min(figures, default=1000), record["example"], record.get("position", 0),
+            record["name"])
 
 
 def new_anchor(text, taken):
@@ -87,7 +91,7 @@ def describe_case(record, out, anchors):
     return {**{key: record[key] for key in ("example", "title", "figures", "about", "measured")},
             "premeshed": record["premeshed"].rstrip("."),
             "anchor": new_anchor("case-%s-%s" % (record["example"], record["name"]), anchors),
-            "fact_names": fact_names, "pictures": pictures,
+            "pictures": pictures,
             "thumbnail": next((by_kind[kind] for kind in THUMBNAIL_KINDS if kind in by_kind), None),
             "variants": [describe_variant(variant, record["variants"], fact_names, out)
                          for variant in record["variants"]]}
@@ -106,10 +110,10 @@ def describe_variant(variant, all_variants, fact_names, out):
         cells.append({"text": text, "best": best})
     for _, key, _ in TIME_COLUMNS:
         cells.append({"text": number_text.seconds(variant["seconds"].get(key)), "best": False})
-    for name in fact_names:
-        cells.append({"text": number_text.fact(variant["facts"].get(name)), "best": False})
+    facts = [{"name": name, "text": number_text.fact(variant["facts"].get(name))}
+             for name in fact_names]
     mesh = variant["mesh"]
-    return {"title": variant["title"], "cells": cells, "lines": variant["lines"], "mesh": mesh,
+    return {"title": variant["title"], "cells": cells, "facts": facts, "lines": variant["lines"], "mesh": mesh,
             "mesh_link": mesh if (out / mesh).exists() else None}
 
 
