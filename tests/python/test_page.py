@@ -149,11 +149,14 @@ def test_unknown_values_are_dashes_and_the_best_ratio_is_bold(cases):
              seconds={"gmsh": 0, "meshgrow": 1.234},
              facts={"part": 0.0123, "nothing": float("inf")})
     case.save()
-    rows = table_of(page_of(cases))
-    assert rows["none"] == ["-"] * 10
-    assert rows["some"] == ["1,234,567", "2.13", "*1.50*", "0.99", "12.3", "123", "< 0.01", "a < b",
-                            "-", "-"]
-    assert rows["more"] == ["12", "*1.50*", "*1.50*", "-", "-", "0", "1.2", "-", "-", "0.0123"]
+    page = page_of(cases)
+    rows = table_of(page)
+    assert rows["none"] == ["-"] * 7
+    assert rows["some"] == ["1,234,567", "2.13", "*1.50*", "0.99", "12.3", "123", "< 0.01"]
+    assert rows["more"] == ["12", "*1.50*", "*1.50*", "-", "-", "0", "1.2"]
+    facts = [" ".join(row[0].split()) for row in Reader(page).rows if len(row) == 1]
+    assert facts == ["words - nothing - part -", "words a < b nothing - part -",
+                     "words - nothing - part 0.0123"]
 
 
 def test_odd_characters_stay_text(cases):
