@@ -102,9 +102,9 @@ def test_the_loaded_gmsh_is_used_whatever_the_variable_names():
                       "gmsh.initialize(readConfigFiles=False)\n"
                       "gmsh.option.setNumber('General.Terminal', 0)\n"
                       "models.square()\n"
-                      "print(meshgrow.SizeField().statistics())\n",
+                      "print(meshgrow.SizeField().statistics()['groups'])\n",
                       MESHGROW_GMSH_LIB="/nowhere/libgmsh.so")
-    assert lines == ["{'functions': [], 'groups': []}"]
+    assert lines == ["[]"]
 
 
 def test_package_can_be_imported_without_gmsh():
