@@ -1,15 +1,14 @@
-"""What the examples share: where results go, words on the terminal, pictures."""
+"""What the examples share: where results go, models, words on the terminal."""
 
 import gzip
 import os
-import subprocess
 import sys
 import time
 
 import gmsh
 import meshgrow
 
-from page.cases import FOLDER as PAGE_FOLDER, OUT
+from page.cases import OUT
 
 # Where the models of Gmsh's documentation are: in Debian's gmsh-doc (packed) or PyPI's wheel.
 MODEL_FOLDERS = [os.path.join("/usr/share/doc/gmsh-doc/doc/gmsh", name)
@@ -102,18 +101,6 @@ def write(name):
     return path
 
 
-def picture(before, after, name, titles, *options):
-    """Renders two meshes side by side, cut open and coloured by element size."""
-    path = os.path.join(OUT, name)
-    if os.environ.get("MESHGROW_EXAMPLES_PICTURES") == "0":
-        return None
-    print("-- rendering %s" % os.path.relpath(path), flush=True)
-    subprocess.run(
-        [sys.executable, os.path.join(PAGE_FOLDER, "render_cut.py"), before, after, "-o", path,
-         "--title-before", titles[0], "--title-after", titles[1], *options], check=True)
-    return path
-
-
 def show(rows, files):
     """Prints the report table and where the results are."""
     print("\n" + meshgrow.report_table(rows))
@@ -124,7 +111,7 @@ def show(rows, files):
 
 
 def show_files(files):
-    """Prints where the results are; None stands for a picture that was not wanted."""
+    """Prints where the results are."""
     for path in files:
         if path:
             print("   %s" % os.path.relpath(path))
