@@ -12,6 +12,13 @@
  * libgmsh is found at run time: the one loaded in the process, else the file named by the
  * environment variable MESHGROW_GMSH_LIB, else the usual names. 4.8 or later is needed.
  *
+ * A size function takes start sizes S0 on its sources (`mesh`: the mesh that is there; `fixed`: one
+ * size; `curvature` and `proximity`: the geometry) and grows them into what it is attached to and
+ * all that bounds that: at the distance R, min(L, S0 + (1 - 1/g) R), with the growth rate g >= 1
+ * (1.1 is slow, 1.2 usual, 1.5 fast) and the limit L > 0. The smallest over all facets and
+ * functions wins. Sizes are isotropic, distances Euclidean. Sources are best meshed first:
+ * meshgrow_field_generate sees to it.
+ *
  * Thread safety: as Gmsh itself, one thread at a time, except meshgrow_field_size,
  * meshgrow_field_exact_size, meshgrow_field_answer and the callbacks on a field that is not being
  * changed. */

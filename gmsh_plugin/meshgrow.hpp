@@ -24,6 +24,10 @@
 ///     field.add_mesh({{2, 7}}, {{3, 2}}, 1.2, 2.0);    // sources, attachments, growth, limit
 ///     field.generate(3);                               // Gmsh's own 1D/2D/3D, sources first
 ///
+/// A size function grows the sizes S0 on its sources into what it is attached to, and all that
+/// bounds that: at the distance R, min(L, S0 + (1 - 1/g) R), with the growth rate g >= 1 (1.1 is
+/// slow, 1.2 usual, 1.5 fast) and the limit L > 0; the smallest over all facets and functions wins.
+///
 /// Entities are pairs of dimension and tag, as in gmsh.h. Coordinates and sizes are in model units,
 /// angles in degrees. What goes wrong is thrown as `meshgrow::Error`: one sentence that names the
 /// entity and the remedy. Thread safety is said at each function where it is more than Gmsh's: one
