@@ -223,20 +223,20 @@ VARIANTS = {
     "fixed": "six fixed size functions",
     "with": "curves bunched, one mesh size function",
 }
-PAGE = {  # title, about, point and radius of each picture
+PAGE = {  # title, about; point, radius and caption of each picture
     "naca0012": (
         "NACA 0012, sizes at nose, shock and tail",
         "One mesh size function on curves that are bunched in the usual way takes the place of six "
         "fixed ones. Left to Gmsh, the small elements beside it end after a few layers.",
-        ((0.5, 0, 0.65), (0.06, 0, 0.12))),
+        ((0.5, 0, 0.65, "The whole airfoil."), (0.06, 0, 0.12, "Its nose."))),
     "naca0012_quads": (
         "NACA 0012, quadrilaterals",
         "The same with quadrilaterals: without the size function, sizes jump beside the airfoil.",
-        ((0.5, 0, 0.65),)),
+        ((0.5, 0, 0.65, "The whole airfoil."),)),
     "cambered_flap": (
         "NACA 4412 with a flap",
         "A cambered airfoil with a flap: the slot between them grows from both of its walls.",
-        ((0.55, -0.02, 0.7), (0.79, -0.02, 0.1))),
+        ((0.55, -0.02, 0.7, "Airfoil and flap."), (0.79, -0.02, 0.1, "The slot between them."))),
 }
 
 
@@ -289,7 +289,9 @@ def make_case(name):
     """Meshes a case for the page; returns its rows of the table and its files."""
     title, about, pictures = PAGE[name]
     case = cases.Case("airfoil", name, title=title, figures="Figure 1", about=about,
-                      premeshed="curves of the airfoil, bunched by Bump at nose, shock and tail",
+                      premeshed="curves of the airfoil, bunched by Bump at nose, shock and tail (nothing for "
+                      "the six fixed size functions)" if name == "naca0012" else
+                      "curves of the airfoil, bunched by Bump at nose, shock and tail",
                       measured="the air")
     rows, files = {}, []
     for variant in variants_of(name):
@@ -298,9 +300,10 @@ def make_case(name):
         files.append(page["mesh"])
         gmsh.model.remove()
     for before in variants_of(name)[:-1]:
-        for x, y, radius in pictures[:1] if before == "fixed" else pictures:
+        for x, y, radius, caption in pictures[:1] if before == "fixed" else pictures:
             case.draw("surface", before, "with", "--dim", "2", "--view", "0,0,0",
-                      "--focus", "%g,%g,0,%g" % (x, y, radius))
+                      "--focus", "%g,%g,0,%g" % (x, y, radius),
+                      caption="Two ways to about the same sizes." if before == "fixed" else caption)
     case.draw_histogram("without", "with", dim=2)
     return rows, files + case.save()
 

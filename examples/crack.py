@@ -97,7 +97,8 @@ def main():
     case.draw("surface", "without", "with", "--dim", "2", "--volumes", str(crack),
               "--view", "-45,0,0")
     case.draw("cut", "without", "with", "--plane", "0,0,0,1,0,0")
-    case.draw("cut", "without", "with", "--plane", "0,0,0,1,0,0", "--focus", "0,10.6,10.6,9")
+    case.draw("cut", "without", "with", "--plane", "0,0,0,1,0,0", "--focus", "0,10.6,10.6,9",
+              caption="At the front of the crack.")
     case.draw_histogram("without", "with", dim=3)
     pictures = case.save()
     tools.show({"block, " + name: row["block"] for name, row in rows.items()},

@@ -2,6 +2,8 @@
 //
 //     meshgrow mesh earlier_run.geo -3 --remesh -o later_run.msh
 //
+// in the folder where earlier_run.py has written its files (examples/out).
+//
 // As the later run of earlier_run.py, which explains it and writes the two files that are read here.
 // --remesh throws away all meshes but those of sources.
 

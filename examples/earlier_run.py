@@ -135,11 +135,12 @@ def main():
         gmsh.model.remove()
 
     cut = ("--plane", "0,0,0,0,-1,0")
-    case.draw("surface", "coarser", "finer", "--dim", "2", "--view", "iso")
+    case.draw("surface", "coarser", "finer", "--dim", "2", "--view", "iso",
+              caption="The same in all runs.")
     case.draw("cut", "without", "coarser", *cut)
-    case.draw("cut", "coarser", "finer", *cut)
+    case.draw("cut", "coarser", "finer", *cut, caption="By a larger and by a smaller growth rate.")
     case.draw_histogram("without", "coarser", dim=3)
-    case.draw_histogram("coarser", "finer", dim=3)
+    case.draw_histogram("coarser", "finer", dim=3, caption="By a larger and by a smaller growth rate.")
     pictures = case.save()
     tools.show({name: row["volume"] for name, row in rows.items()},
                [row["path"] for row in rows.values()] + pictures)

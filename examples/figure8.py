@@ -75,9 +75,9 @@ def main():
     gmsh.initialize()
     case = cases.Case(
         "figure8", "box_in_box", title="A volume inside another", figures="Figure 8",
-        about="Both volumes are meshed from the faces that they share. Gmsh's own sizes know too "
-        "little of this mesh, and jump beside the faces; with a mesh size function on them, their "
-        "sizes grow into both volumes.",
+        about="Both volumes are meshed from the faces that they share. In the outer volume, Gmsh's "
+        "sizes leave this mesh behind within a few elements; with a mesh size function on the faces, "
+        "their sizes grow into both volumes at the rate asked for.",
         premeshed="the common faces, finely at one corner (0.08) and coarsely at the opposite one "
         "(0.45)", measured="the outer volume")
     rows, paths = {}, []

@@ -3,6 +3,8 @@
 //
 //     meshgrow mesh imported_face.geo -3 --calibrate
 //
+// in the folder where imported_face.py has written its files (examples/out).
+//
 // The face is discrete: Gmsh and meshgrow keep it, node by node.
 
 DefineConstant[

@@ -2,6 +2,8 @@
 //
 //     meshgrow mesh terrain.geo -3 -o terrain.msh
 //
+// in the folder where terrain.py has written its files (examples/out).
+//
 // As terrain.py, which explains it and has written terrain_surface.msh: a discrete surface with
 // four curves between four points. Lengths are in metres.
 

@@ -151,7 +151,7 @@ def main():
               "--view", "0,0,0")
     case.draw("cut", "without", "with", "--plane", "0,1800,0,0,-1,0")
     case.draw("cut", "without", "with", "--plane", "0,1800,0,0,-1,0", "--focus",
-              "780,1800,300,300")
+              "780,1800,300,300", caption="At the ridge.")
     case.draw_histogram("without", "with", dim=3)
     pictures = case.save()
     tools.show({"air, " + name: row["air"] for name, row in rows.items()},

@@ -139,7 +139,8 @@ def make_case(source, right_face):
     before, left_width = BEFORE[right_face], SOURCES[source][1]
     case.draw("surface", before, "with", "--dim", "2", "--view", "0,0,0")
     case.draw("surface", before, "with", "--dim", "2", "--view", "0,0,0",
-              "--focus", "%g,%g,0,0.6" % (left_width, HEIGHT / 2))
+              "--focus", "%g,%g,0,0.6" % (left_width, HEIGHT / 2),
+              caption="At the common edge.")
     case.draw_histogram(before, "with", dim=2, entities=[RIGHT[1]])
     return rows, case.save()
 

@@ -179,7 +179,8 @@ def make_case(model):
                 model, variant, case, order)
     row = rows[model, "new"]
     case.draw("cut", "old", "new", "--plane", "0,0,0,0,-1,0")
-    case.draw("cut", "old, volume.2 first", "new, volume.2 first", "--plane", "0,0,0,0,-1,0")
+    case.draw("cut", "old, volume.2 first", "new, volume.2 first", "--plane", "0,0,0,0,-1,0",
+              caption="Meshed one after the other, volume.2 first.")
     case.draw("surface", "old", "new", "--dim", "2", "--view", "iso",
               "--volumes", ",".join(map(str, row["common"])))
     case.draw_histogram("old", "new", dim=3, entities=[row["inner"]])

@@ -66,7 +66,8 @@ make_python() {
 
 build_project() {
   say "Building meshgrow in $build"
-  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >"$build/configure.log" ||
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DMESHGROW_BUILD_TESTS=ON >"$build/configure.log" ||
     fail "cmake failed: see $build/configure.log"
   cmake --build "$build" -j2 || fail "the build failed."
 }

@@ -22,6 +22,11 @@ def ratio(value):
     return "%.2f" % value if abs(value) < 100 else count(value)
 
 
+def quality(value):
+    """A quality of elements, 0 to 1."""
+    return "%.3f" % value if is_number(value) else UNKNOWN
+
+
 def percent(value):
     """A share of 1 in percent."""
     return "%.1f" % (100 * value) if is_number(value) else UNKNOWN

@@ -25,10 +25,14 @@ REPORT_COLUMNS = (
      "edge length over the size asked for there, the median; 1 is as asked for"),
     ("good, in\u00a0%", "length_share_good", number_text.percent, None,
      "share of the edges with a length/size from 1/1.41 to 1.41"),
+    ("quality, worst", "gamma_min", number_text.quality, None,
+     "gamma of triangles and tetrahedra, from the radii of the inscribed and the circumscribed "
+     "circle or sphere; 1 is best"),
+    ("quality, mean", "gamma_mean", number_text.quality, None, "the same, of all of them"),
 )
 TIME_COLUMNS = (
-    ("seconds in\u00a0Gmsh", "gmsh", "meshing in Gmsh itself"),
-    ("seconds in\u00a0meshgrow", "meshgrow", "reading the meshes of sources, and answering sizes"),
+    ("seconds in\u00a0Gmsh", "gmsh", "meshing in Gmsh itself, the sizes that it asks for included"),
+    ("seconds in\u00a0meshgrow", "meshgrow", "reading the meshes of sources, measuring curvature and gaps, building trees and grids"),
 )
 HEADINGS = [column[0] for column in REPORT_COLUMNS + TIME_COLUMNS]
 MEANINGS = [(column[0], column[-1]) for column in REPORT_COLUMNS + TIME_COLUMNS] + [

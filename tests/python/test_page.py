@@ -130,6 +130,17 @@ def test_the_check_finds_errors_of_scripts(cases, tmp_path, script, complaint):
     assert any(complaint in text for text in found["script_errors"])
 
 
+def test_an_example_makes_a_page_without_faults(cases, tmp_path, monkeypatch):
+    monkeypatch.setenv("MESHGROW_EXAMPLES_COARSE", "2")
+    for module in ("example_tools", "crack"):
+        sys.modules.pop(module, None)
+    importlib.import_module("crack").main()
+    found = chromium.look_at(page_of(cases), tmp_path / "of the crack")
+    assert chromium.faults(found) == []
+    kinds = {re.split(r"[_.]", path.name)[2].rstrip("2") for path in Path(cases.OUT).glob("*.png")}
+    assert kinds == {"surface", "cut", "histogram"}
+
+
 def test_the_check_finds_dead_links(cases, tmp_path):
     page = page_of(cases)
     page.write_text(page.read_text(encoding="utf-8").replace(
@@ -151,9 +162,10 @@ def test_unknown_values_are_dashes_and_the_best_ratio_is_bold(cases):
     case.save()
     page = page_of(cases)
     rows = table_of(page)
-    assert rows["none"] == ["-"] * 7
-    assert rows["some"] == ["1,234,567", "2.13", "*1.50*", "0.99", "12.3", "123", "< 0.01"]
-    assert rows["more"] == ["12", "*1.50*", "*1.50*", "-", "-", "0", "1.2"]
+    assert rows["none"] == ["-"] * 9
+    assert rows["some"] == ["1,234,567", "2.13", "*1.50*", "0.99", "12.3", "-", "-", "123",
+                            "< 0.01"]
+    assert rows["more"] == ["12", "*1.50*", "*1.50*", "-", "-", "-", "-", "0", "1.2"]
     facts = [" ".join(row[0].split()) for row in Reader(page).rows if len(row) == 1]
     assert facts == ["words - nothing - part -", "words a < b nothing - part -",
                      "words - nothing - part 0.0123"]

@@ -29,7 +29,7 @@ ELSEWHERE = {
     "tests/run.sh": ("tests/setup.sh", "Sourced by tests/run.sh"),
     "pip install .": ("tests/packaging/wheel.sh", "pip install ."),
     "sudo apt-get install": ("tests/setup.sh", "apt-get"),
-    "cmake -S . -B build -DMESHGROW_BUILD_TESTS=OFF": ("tests/packaging/installed_package.sh",
+    "cmake -S . -B build/install -DMESHGROW_BUILD_TESTS=OFF": ("tests/packaging/installed_package.sh",
                                                        "cmake --install"),
     "cmake --build build": ("tests/setup.sh", "cmake --build"),
     "cmake --install build": ("tests/packaging/installed_package.sh", "cmake --install"),
