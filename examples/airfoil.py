@@ -11,7 +11,6 @@ airfoil.geo and airfoil.cpp mesh NACA 0012 by both ways, with the same names and
 """
 
 import math
-import time
 
 import gmsh
 import meshgrow
@@ -256,9 +255,7 @@ def make_mesh(name, variant):
     print("-- %s: %s" % (name, VARIANTS[variant]), flush=True)
     seconds = None
     if variant == "without":
-        begin = time.perf_counter()
-        gmsh.model.mesh.generate(2)
-        seconds = {"gmsh": time.perf_counter() - begin, "meshgrow": 0}
+        seconds = tools.generate_by_gmsh(2)
         asked.refresh()  # the sizes it would ask for are only measured against
     else:
         asked.generate(2)
@@ -289,9 +286,9 @@ def make_case(name):
     """Meshes a case for the page; returns its rows of the table and its files."""
     title, about, pictures = PAGE[name]
     case = cases.Case("airfoil", name, title=title, figures="Figure 1", about=about,
-                      premeshed="curves of the airfoil, bunched by Bump at nose, shock and tail (nothing for "
-                      "the six fixed size functions)" if name == "naca0012" else
-                      "curves of the airfoil, bunched by Bump at nose, shock and tail",
+                      premeshed="curves of the airfoil, bunched by Bump at nose, shock and tail" + (
+                          " (nothing for the six fixed size functions)"
+                          if name == "naca0012" else ""),
                       measured="the air")
     rows, files = {}, []
     for variant in variants_of(name):

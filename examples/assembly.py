@@ -5,15 +5,14 @@ Fragmented, they share faces. The bolts get a fine fixed size. The plate and the
 later, share the bolts' faces: a mesh size function on those carries their fine mesh into the plates.
 """
 
-import os
 
 import gmsh
 import meshgrow
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 BOLT_SIZE = 1.5 * COARSE  # millimetres
 GROWTH_RATE = 1.2
 SIZE_LIMIT = 15.0

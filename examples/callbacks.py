@@ -13,16 +13,15 @@ or, with the field called where Gmsh calls (each size is a little Python code th
 Without sizes of one's own, the field itself is a callback: `gmsh.model.mesh.setSizeCallback(field)`.
 """
 
-import os
 
 import gmsh
 import meshgrow
 
 import example_tools as tools
+from example_tools import COARSE
 
 GROWTH_RATE = 1.2
 SIZE_LIMIT = 0.8
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 SPHERE_SIZE = 0.1 * COARSE
 
 

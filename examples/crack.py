@@ -11,15 +11,14 @@ crack.geo and crack.cpp do the same, step by step. Lengths are in millimetres.
 """
 
 import math
-import os
 
 import gmsh
 import meshgrow
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 SIDE = 100  # of the block
 LENGTH, WIDTH = 50, 30  # of the ellipse
 TILT = math.pi / 4  # against the horizontal

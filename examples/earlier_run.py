@@ -19,9 +19,9 @@ import meshgrow
 import numpy as np
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 STUDY = {"angle": 24 * COARSE, "growth_rate": 1.2, "size_limit": 0.5 * COARSE, "min_size": 0.05}
 # Growth rate and limit in the volume, of the later runs.
 LATER = {"coarser": (1.5, 2.0), "finer": (1.1, 0.3 * COARSE)}

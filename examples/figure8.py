@@ -11,6 +11,7 @@ import gmsh
 import meshgrow
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
 GROWTH_RATE = 1.2
@@ -18,7 +19,6 @@ TITLES = {"no extension": "Gmsh's own sizes",
           "without": "Gmsh extends the sizes of the faces",
           "with": "a mesh size function on the common faces"}
 SIZE_LIMIT = 2.0
-COARSE = float(tools.os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 
 
 def build_geometry():

@@ -20,16 +20,15 @@ later ones read volumes, and faces only as boundary conditions of one, which is 
 import collections
 import math
 import os
-import time
 
 import gmsh
 import meshgrow
 import numpy as np
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 GROWTH_RATE = 1.2
 SIZE_LIMIT = 5.0  # never reached
 FORMATS = (".msh", ".stl", ".unv", ".neu")
@@ -284,12 +283,11 @@ def make_mesh(shape, ending, with_size_function, case):
     if with_size_function:
         tools.generate(asked, name)
     else:
-        begin = time.perf_counter()
-        gmsh.model.mesh.generate(3)  # keeps A as well: it is discrete
-        seconds = {"gmsh": time.perf_counter() - begin, "meshgrow": 0}
+        seconds = tools.generate_by_gmsh()  # keeps A as well: it is discrete
         asked.refresh()
 
-    row = meshgrow.report(3, [(3, volume)], asked)
+    report = meshgrow.report(3, [(3, volume)], asked)
+    row = dict(report)
     imported = {place for triangle in as_read for place in triangle}
     now = set(places().values())
     row["imported"] = len(imported)
@@ -298,7 +296,7 @@ def make_mesh(shape, ending, with_size_function, case):
     row["largest_asked"] = asked.exact_size(3, volume, sorted(now)).max()
     path = tools.write(os.path.basename(mesh_path(shape, name)))
     case.add(name, "mesh size function on A (%s)" % ending if with_size_function else "Gmsh alone",
-             mesh=path, report=meshgrow.report(3, [(3, volume)], asked),
+             mesh=path, report=report,
              field=asked if with_size_function else None, seconds=seconds,
              facts={"imported nodes": len(imported), "moved": row["moved"], "format": ending,
                     "largest size asked for": round(row["largest_asked"], 2)})

@@ -19,16 +19,15 @@ from it.
 
 import math
 import os
-import time
 
 import gmsh
 import meshgrow
 import numpy as np
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 GROWTH_RATE = 1.2
 LIMIT = COARSE / 20  # largest size, times the diagonal of the part
 SMALLEST = 0.1  # times the largest size
@@ -110,26 +109,10 @@ def mesh_with_field(field):
     return field.statistics()["seconds"]
 
 
-def mesh_with_callback(field):
-    """Gmsh meshes discrete patches anew, with the sizes of the field only; returns the same."""
-    begin = time.perf_counter()
-    field.refresh()
-    field.register()
-    gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
-    ready = time.perf_counter()
-    gmsh.model.mesh.generate(3)
-    seconds = {"gmsh": time.perf_counter() - ready, "meshgrow": ready - begin}
-    gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
-    field.unregister()
-    return seconds
-
-
 def mesh_by_gmsh():
     """Gmsh's own sizes; returns the same."""
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 360 / 18)
-    begin = time.perf_counter()
-    gmsh.model.mesh.generate(3)
-    seconds = {"gmsh": time.perf_counter() - begin, "meshgrow": 0}
+    seconds = tools.generate_by_gmsh()
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 0)
     return seconds
 
@@ -168,7 +151,7 @@ def mesh_stl(case, part):
             field.refresh()  # measured against only: the sizes that the file asks for
             seconds = mesh_by_gmsh()
         else:
-            seconds = mesh_with_callback(field)
+            seconds = tools.generate_registered(field)
         rows[variant] = finish(case, part, variant, field, seconds)
         gmsh.model.remove()
     return rows

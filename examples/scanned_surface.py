@@ -7,20 +7,19 @@ STL file and read back, as what a scanner's own software hands over: one discret
 
 From then on the surface is kept, node by node, and a box of air around it is meshed. By itself,
 Gmsh gets from its small triangles to the large ones of the box within a few elements; a mesh size
-function with the surface as its source grows at a chosen rate. """
+function with the surface as its source grows at a chosen rate.
+"""
 
 import math
-import os
-import time
 
 import gmsh
 import meshgrow
 import numpy as np
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 SHARP_EDGE = 40  # degrees between triangles of the file
 SMALLEST, LARGEST = 1.2 * COARSE, 6 * COARSE  # on the surface
 GROWTH_RATE = 1.2
@@ -38,12 +37,7 @@ def remesh_scan(name):
     field = meshgrow.SizeField()
     field.add_curvature(sources=surfaces, attach=surfaces, angle=18, growth_rate=GROWTH_RATE,
                         size_limit=LARGEST, min_size=SMALLEST)
-    field.refresh()  # from the triangles of the file, which Gmsh throws away as it begins
-    field.register()
-    gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
-    gmsh.model.mesh.generate(2)
-    gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
-    field.unregister()
+    tools.generate_registered(field, 2)
     path = tools.write("scanned_surface.stl")
     gmsh.model.remove()
     return path
@@ -81,9 +75,7 @@ def make_mesh(case, path, name, title, with_mesh_function):
         tools.generate(field, "the air " + name)
         seconds = field.statistics()["seconds"]
     else:
-        begin = time.perf_counter()
-        gmsh.model.mesh.generate(3)  # keeps the surface: it is discrete
-        seconds = {"gmsh": time.perf_counter() - begin, "meshgrow": 0}
+        seconds = tools.generate_by_gmsh()  # keeps the surface: it is discrete
         field.refresh()  # measured against only
     row = {"tag": surface, "scanned": scanned, "surface": tools.mesh_of((2, surface)),
            "air": meshgrow.report(3, [(3, air)], field),

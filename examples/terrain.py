@@ -9,7 +9,6 @@ function with the terrain as its source lets faces and air grow from the triangl
 terrain.geo builds the same on terrain_surface.msh, which is written here. Lengths are in metres.
 """
 
-import time
 
 import gmsh
 import meshgrow
@@ -120,12 +119,10 @@ def make_mesh(case, name, title, places, triangles, with_mesh_function):
         tools.generate(field, "the air " + name)
         seconds = field.statistics()["seconds"]
     else:
-        begin = time.perf_counter()
-        gmsh.model.mesh.generate(3)  # keeps the terrain: it is discrete
-        seconds = {"gmsh": time.perf_counter() - begin, "meshgrow": 0}
+        seconds = tools.generate_by_gmsh()  # keeps the terrain: it is discrete
         field.refresh()  # measured against only
     row = {"tags": (air, terrain), "terrain": tools.mesh_of((2, terrain)),
-           "air": meshgrow.report(3, [(3, air)], field), 
+           "air": meshgrow.report(3, [(3, air)], field),
            "path": tools.write("terrain_%s.msh" % name)}
     case.add(name, title, row["path"], row["air"], field if with_mesh_function else None, seconds)
     gmsh.model.remove()

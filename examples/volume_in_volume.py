@@ -34,9 +34,9 @@ import meshgrow
 import numpy as np
 
 import example_tools as tools
+from example_tools import COARSE
 from page import cases
 
-COARSE = float(tools.os.environ.get("MESHGROW_EXAMPLES_COARSE", "1"))  # tests run it coarser
 CELLS_PER_GAP = 3 / COARSE
 ANGLE = 25 * COARSE
 GROWTH = {"growth_rate": 1.2, "size_limit": 2.0 * COARSE}
