@@ -1,5 +1,5 @@
-# Sourced by tests/run.sh and examples/run.sh: brings a fresh Debian 12 machine to where the project
-# builds and runs, and builds it. Asks for nothing that is there already.
+# Sourced by tests/run.sh, examples/run.sh and the other scripts: brings a fresh Debian 12 machine to
+# where the project builds and runs, and builds it. Asks for nothing that is there already.
 #
 # Sets: root, build (folder), python_debian (Python with Debian's Gmsh 4.8.4), python_newest (Python
 # with the newest Gmsh from PyPI) and libgmsh_debian, libgmsh_newest.
@@ -14,9 +14,11 @@ fail() {
   exit 1
 }
 
-# Peers of the benchmarks, for who sets with_benchmarks.
+# Peers of the benchmarks, for who sets with_benchmarks; compilers and tools of the checks beside the
+# tests (sanitizers, fuzzing, clang-tidy, coverage), for who sets with_checks.
 extra_packages=()
-[ -z "${with_benchmarks:-}" ] || extra_packages=(libcgal-dev libembree-dev libbenchmark-dev)
+[ -z "${with_benchmarks:-}" ] || extra_packages+=(libcgal-dev libembree-dev libbenchmark-dev)
+[ -z "${with_checks:-}" ] || extra_packages+=(clang clang-tidy llvm libomp-dev gcovr)
 
 install_packages() {
   local wanted=(
@@ -74,5 +76,6 @@ build_project() {
 
 install_packages
 make_python
-build_project
+# Who sets without_build builds in a way and place of its own.
+[ -n "${without_build:-}" ] || build_project
 export PYTHONPATH=$build/python
