@@ -54,13 +54,17 @@ void set_option(meshgrow::ModelField& model_field, const std::string& name, doub
       throw Error("The evaluator must be 0 (auto), 1 (grid) or 2 (exact).");
     }
     options.evaluator = static_cast<meshgrow::Evaluator>(static_cast<int>(value));
+  } else if (name == "max_cells") {
+    meshgrow::check_max_cells(value);
+    options.max_cells = static_cast<std::size_t>(value);
   } else if (name == "strict") {
     model_field.set_strict(value != 0.0);
   } else if (name == "calibrate") {
     model_field.set_calibrate(value != 0.0);
   } else {
     throw Error("There is no option \"" + name +
-                "\": give \"tolerance\", \"threads\", \"evaluator\", \"strict\" or \"calibrate\".");
+                "\": give \"tolerance\", \"threads\", \"max_cells\", \"evaluator\", \"strict\" or "
+                "\"calibrate\".");
   }
 }
 

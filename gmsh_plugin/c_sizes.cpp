@@ -84,6 +84,7 @@ json summary_json(const meshgrow::ModelField& model_field) {
       entry["grid"] = {{"interpolated_cells", group.grid.interpolated_leaves},
                        {"exact_cells", group.grid.exact_leaves},
                        {"depth", group.grid.depth},
+                       {"limited", group.grid.is_limited},
                        {"bytes", group.grid.bytes},
                        {"seconds", group.grid.seconds}};
     }

@@ -121,10 +121,12 @@ MESHGROW_API int meshgrow_field_save(meshgrow_field* field, const char* path);
 MESHGROW_API meshgrow_field* meshgrow_field_load(const char* path);
 
 /* Options, before the field is used: "tolerance" (relative, of the background grid; 0.05),
- * "threads" (that build grids; 0: all), "evaluator" (0: auto, 1: grid, 2: exact), "strict" (1: a
- * mesh size function whose source has no mesh is an error; 0: a warning), "calibrate" (1: the sizes
- * that Gmsh is told are corrected by measured factors, so that its edges get the length asked for;
- * 0). */
+ * "threads" (that build grids; 0: all), "max_cells" (of each grid, 40 bytes a cell; 0: as many as
+ * half of the available memory holds while they are built; a grid that needs more is coarser, with
+ * a warning, and more sizes are searched for in the facets), "evaluator" (0: auto, 1: grid, 2:
+ * exact), "strict" (1: a mesh size function whose source has no mesh is an error; 0: a warning),
+ * "calibrate" (1: the sizes that Gmsh is told are corrected by measured factors, so that its edges
+ * get the length asked for; 0). */
 MESHGROW_API int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value);
 
 /* Calls `listener` with each line of progress (passes of the mesher, how far a grid is) from the

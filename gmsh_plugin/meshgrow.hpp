@@ -120,6 +120,9 @@ struct Options {
   bool strict = false;
   /// That build grids; 0 takes all.
   int threads = 0;
+  /// Most cells of a background grid, 40 bytes each; 0: as many as half of the available memory
+  /// holds while they are built. A grid that needs more is coarser, with a warning in Gmsh's log.
+  std::size_t max_cells = 0;
   /// Corrects what Gmsh is told by measured factors, so that its edges get the length asked for:
   /// without, they are 1.3 times as long in volumes.
   bool calibrate = false;
@@ -142,6 +145,7 @@ class SizeField {
     set_option("evaluator", static_cast<double>(options.evaluator));
     set_option("strict", options.strict ? 1.0 : 0.0);
     set_option("threads", options.threads);
+    set_option("max_cells", static_cast<double>(options.max_cells));
     set_option("calibrate", options.calibrate ? 1.0 : 0.0);
     if (options.progress) {
       state_->progress = options.progress;

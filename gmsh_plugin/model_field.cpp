@@ -51,10 +51,24 @@ ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_)
   field_.options().progress = [this](const std::string& what, double done) {
     tell_grid(what, done);
   };
+  field_.options().warn = [this](const std::string& sentence) { warn(sentence); };
 }
 
 ModelField::ModelField(const std::string& file)
-    : field_(load_field(file)), answers_(field_), file_(file) {}
+    : field_(load_field(file)), answers_(field_), file_(file) {
+  field_.options().warn = [this](const std::string& sentence) { warn(sentence); };
+}
+
+/// In Gmsh's log, or to the listener: a field from a file may be used without any Gmsh.
+void ModelField::warn(const std::string& sentence) const {
+  try {
+    gmsh::log(sentence, "warning");
+  } catch (const Error&) {
+    if (listener_) {
+      listener_("Warning: " + sentence);
+    }
+  }
+}
 
 void ModelField::check_changeable(const std::string& what) const {
   if (!file_.empty()) {

@@ -184,6 +184,7 @@ class ModelField {
 
   void tell_grid(const std::string& what, double done);
   void stop_if_asked() const;
+  void warn(const std::string& sentence) const;
 
   std::string model_;
   SizeField field_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cell_budget.h"
 #include "error.h"
 #include "grid_builder.h"
 #include "grid_cell.h"
@@ -15,10 +16,13 @@ namespace {
 
 constexpr double smallest_tolerance = 1e-4;
 
+constexpr double fewest_max_cells = 8.0;
+
 constexpr std::uint32_t last_step = (1u << max_grid_depth) - 1;
 
 void check(const GridOptions& options) {
   check_tolerance(options.tolerance);
+  check_max_cells(static_cast<double>(options.max_cells));
   if (options.facets_per_exact_leaf < 0) {
     throw Error("A cell of the background grid must be allowed 0 facets or more, not " +
                 std::to_string(options.facets_per_exact_leaf) + ".");
@@ -31,6 +35,15 @@ void check_tolerance(double tolerance) {
   if (!(tolerance >= smallest_tolerance && tolerance <= 1.0)) {
     throw Error("The tolerance of the background grid is " + shortest(tolerance) +
                 ": give a number from 0.0001 to 1, for example 0.05.");
+  }
+}
+
+void check_max_cells(double cells) {
+  if (cells != 0.0 &&
+      !(cells >= fewest_max_cells && cells <= static_cast<double>(most_cells_of_all))) {
+    throw Error(
+        "The background grid may have at most " + shortest(cells) +
+        " cells: give a number from 8 to 400 million, or 0 for as many as fit into memory.");
   }
 }
 
@@ -48,7 +61,8 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double siz
     stored_.cube.edge = box.sizes().maxCoeff() + 2.0 * margin;
   }
   set_steps();
-  GridNodes nodes = GridBuilder(*tree_, stored_.cube, size_limit, options).build();
+  GridBuilder builder(*tree_, stored_.cube, size_limit, options);
+  GridNodes nodes = builder.build();
   GridTable table = make_grid_table(nodes.blocks);
   stored_.blocks = std::move(nodes.blocks);
   stored_.corners = std::move(nodes.corners);
@@ -62,6 +76,9 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, double siz
   statistics.exact_leaves = stored_.exact_begin.size() - 1;
   statistics.blocks = stored_.blocks.size() - 1;  // one stands above the root
   statistics.depth = nodes.depth;
+  statistics.max_cells = builder.max_cells();
+  statistics.is_limited = builder.is_limited();
+  statistics.tolerance = std::max(options.tolerance, nodes.undecided_tolerance);
   statistics.bytes = stored_.blocks.bytes() + stored_.corners.bytes() +
                      stored_.exact_begin.bytes() + stored_.exact_entries.bytes() +
                      stored_.table.bytes();

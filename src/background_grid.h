@@ -21,6 +21,10 @@ struct GridOptions {
   int threads = 0;
   /// A cell with at most so many facets left may keep them and answer from them.
   int facets_per_exact_leaf = 192;
+  /// Most cells, of 40 bytes each; one that keeps many facets counts as several. 0: as many as half
+  /// of the memory that is available holds while they are built. What a grid of so many cells
+  /// cannot refine is answered by the tree: exactly, but slower.
+  std::size_t max_cells = 0;
   /// Where sizes will be asked for; everywhere if null. Cells outside are not refined: points in
   /// them are answered by the tree.
   std::shared_ptr<const AttachedRegion> region;
@@ -30,6 +34,9 @@ struct GridOptions {
 
 /// Throws Error unless a background grid can have this relative tolerance: 0.0001 to 1.
 void check_tolerance(double tolerance);
+
+/// Throws Error unless so many cells can be the most of a background grid: 0, or 8 to 400 million.
+void check_max_cells(double cells);
 
 /// A leaf of a background grid, as BackgroundGrid::for_each_leaf tells it.
 struct GridLeaf {

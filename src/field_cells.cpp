@@ -5,6 +5,7 @@
 
 #include "attached_region.h"
 #include "error.h"
+#include "number_text.h"
 
 namespace meshgrow {
 
@@ -43,6 +44,7 @@ std::shared_ptr<const BackgroundGrid> built_aside(const SizeField::Answering& an
   GridOptions options;
   options.tolerance = field_options.tolerance;
   options.threads = field_options.threads;
+  options.max_cells = field_options.max_cells;
   if (use == CellUse::interpolate) {
     options.facets_per_exact_leaf = 0;
     options.region = region_of(box);
@@ -52,7 +54,16 @@ std::shared_ptr<const BackgroundGrid> built_aside(const SizeField::Answering& an
       field_options.progress("Cells of the size field", done);
     };
   }
-  return std::make_shared<BackgroundGrid>(answering.tree, answering.size_limit, box, options);
+  auto grid = std::make_shared<BackgroundGrid>(answering.tree, answering.size_limit, box, options);
+  const BackgroundGrid::Statistics& statistics = grid->statistics();
+  if (use == CellUse::interpolate && statistics.is_limited && field_options.warn) {
+    field_options.warn("The size field needs more than " + grouped_digits(statistics.max_cells) +
+                       " cells and is coarser than it should be: interpolated sizes are within " +
+                       rounded(100.0 * statistics.tolerance, 0) + " % instead of " +
+                       rounded(100.0 * options.tolerance, 0) +
+                       " %; raise max_cells or the tolerance.");
+  }
+  return grid;
 }
 
 /// What is shown need not be as good as what is answered: at least so much may it differ, and this

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "error.h"
 #include "parallel.h"
 
 namespace meshgrow {
@@ -17,12 +17,10 @@ constexpr std::size_t open_cells_wanted = 512;
 /// Relative to 1 + t.
 constexpr double rounding_reserve = 1.2e-5;
 
+constexpr std::size_t nodes_of_block = 8;
+
 /// Sizes that float holds with all its digits.
 bool fits_float(double size) { return size > 1e-37 && size < 1e37; }
-
-}  // namespace
-
-namespace {
 
 std::array<GridCell, 8> children_of(const GridCell& cell, const Lattice& lattice) {
   std::array<GridCell, 8> children;
@@ -30,6 +28,14 @@ std::array<GridCell, 8> children_of(const GridCell& cell, const Lattice& lattice
     children[child] = child_cell(cell, child, lattice);
   }
   return children;
+}
+
+double smallest_start_size(const FacetTree& tree) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const SizedFacet& facet : tree.facets()) {
+    smallest = std::min(smallest, facet.start_size);
+  }
+  return smallest;
 }
 
 }  // namespace
@@ -40,7 +46,9 @@ GridBuilder::GridBuilder(const FacetTree& tree, const GridCube& cube, double siz
       cube_(cube),
       size_limit_(size_limit),
       options_(options),
-      tolerance_(options.tolerance - rounding_reserve * (1.0 + options.tolerance)) {
+      tolerance_(options.tolerance - rounding_reserve * (1.0 + options.tolerance)),
+      max_cells_(options.max_cells > 0 ? options.max_cells : default_max_cells()),
+      smallest_start_size_(smallest_start_size(tree)) {
   classifiers_.resize(
       static_cast<std::size_t>(options.threads > 0 ? options.threads : default_threads()));
 }
@@ -56,6 +64,29 @@ CellClassifier& GridBuilder::own_classifier(int thread) {
 }
 
 GridNodes GridBuilder::build() {
+  if (!fits(max_grid_depth)) {
+    // Whether the cells up to some depth fit depends on no thread, and so neither does the result.
+    is_limited_ = true;
+    int deep_enough = 0;
+    for (int too_deep = max_grid_depth; too_deep - deep_enough > 1;) {
+      const int between = (deep_enough + too_deep) / 2;
+      (fits(between) ? deep_enough : too_deep) = between;
+    }
+    if (max_depth_ != deep_enough) {
+      fits(deep_enough);
+    }
+  }
+  if (options_.progress) {
+    options_.progress(1.0);
+  }
+  return std::move(nodes_);
+}
+
+/// Builds `nodes_` with cells of at most this depth; false if they are too many.
+bool GridBuilder::fits(int max_depth) try {
+  nodes_ = Nodes();
+  max_depth_ = max_depth;
+  budget_ = std::make_unique<CellBudget>(max_cells_);
   const std::vector<OpenCell> open = build_top();
   std::vector<Nodes> parts(open.size());
   std::vector<NodeCode> roots(open.size());
@@ -71,15 +102,31 @@ GridNodes GridBuilder::build() {
           options_.progress(static_cast<double>(done) / static_cast<double>(open.size()));
         }
       });
+  join(open, roots, parts);
+  return true;
+} catch (const CellBudget::Exceeded&) {
+  nodes_ = Nodes();
+  return false;
+}
+
+void GridBuilder::join(const std::vector<OpenCell>& open, const std::vector<NodeCode>& roots,
+                       std::vector<Nodes>& parts) {
+  const auto reserve = [&](auto member) {
+    std::size_t size = (nodes_.*member).size() + 1;
+    for (const Nodes& part : parts) {
+      size += (part.*member).size();
+    }
+    (nodes_.*member).reserve(size);
+  };
+  reserve(&Nodes::blocks);
+  reserve(&Nodes::corners);
+  reserve(&Nodes::exact_begin);
+  reserve(&Nodes::exact_entries);
   for (std::size_t i = 0; i < open.size(); ++i) {
     append_subtree(parts[i], roots[i], open[i]);
     parts[i] = Nodes();
   }
   nodes_.exact_begin.push_back(static_cast<std::uint32_t>(nodes_.exact_entries.size()));
-  if (options_.progress) {
-    options_.progress(1.0);
-  }
-  return std::move(nodes_);
 }
 
 std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
@@ -101,8 +148,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
   }
   root.whereabouts = of_root(root.cell);
   std::vector<OpenCell> open{root};
-  while (!open.empty() && open.size() < open_cells_wanted &&
-         open.front().cell.depth < max_grid_depth) {
+  while (!open.empty() && open.size() < open_cells_wanted && open.front().cell.depth < max_depth_) {
     struct Classified {
       Verdict verdict;
       Nodes leaf;  ///< that one only
@@ -136,8 +182,7 @@ std::vector<GridBuilder::OpenCell> GridBuilder::build_top() {
         append_subtree(result.leaf, result.code, open[i]);
         continue;
       }
-      const std::size_t block = nodes.blocks.size();
-      nodes.blocks.emplace_back();
+      const std::size_t block = append_block(nodes);
       set_code(open[i], grid_node(NodeKind::block, block));
       const auto candidates = std::make_shared<CellCandidates>(result.split.candidates);
       for (int child = 0; child < 8; ++child) {
@@ -223,12 +268,11 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
   if (verdict != Verdict::split) {
     return append_leaf(verdict, cell, classifier, nodes);
   }
-  if (cell.depth == max_grid_depth) {
-    return grid_node(NodeKind::tree, 0);
+  if (cell.depth == max_depth_) {
+    return append_undecided(cell, ruling, nodes);
   }
   const CellClassifier::Split split = classifier.split(cell);
-  const std::size_t block = nodes.blocks.size();
-  nodes.blocks.emplace_back();
+  const std::size_t block = append_block(nodes);
   const std::array<GridCell, 8> children = children_of(cell, split.lattice);
   const std::array<Whereabouts, 8> places = of_children(children, whereabouts);
   for (int child = 0; child < 8; ++child) {
@@ -239,8 +283,26 @@ GridBuilder::NodeCode GridBuilder::build_subtree(const GridCell& cell,
   return grid_node(NodeKind::block, block);
 }
 
+std::size_t GridBuilder::append_block(Nodes& nodes) const {
+  budget_->spend(nodes_of_block);
+  nodes.blocks.emplace_back();
+  return nodes.blocks.size() - 1;
+}
+
+/// Answered by the tree. Between exact values at the corners of a cell of edge s, interpolation is
+/// off by (√3/2) α s at most.
+GridBuilder::NodeCode GridBuilder::append_undecided(const GridCell& cell,
+                                                    const FacetTree::Smallest& ruling,
+                                                    Nodes& nodes) const {
+  const double change = std::sqrt(3.0) * cell.half_edge(cube_) * tree_.largest_slope();
+  const double least = std::max(smallest_start_size_, ruling.size - change);
+  nodes.undecided_tolerance = std::max(nodes.undecided_tolerance, change / least);
+  return grid_node(NodeKind::tree, 0);
+}
+
 GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& cell,
-                                               const CellClassifier& classifier, Nodes& nodes) {
+                                               const CellClassifier& classifier,
+                                               Nodes& nodes) const {
   nodes.depth = std::max(nodes.depth, cell.depth);
   if (verdict == Verdict::interpolate) {
     if (!std::all_of(cell.corner_values.begin(), cell.corner_values.end(), fits_float)) {
@@ -252,6 +314,7 @@ GridBuilder::NodeCode GridBuilder::append_leaf(Verdict verdict, const GridCell& 
     nodes.corners.push_back(values);
     return grid_node(NodeKind::interpolated, nodes.corners.size() - 1);
   }
+  budget_->spend(classifier.leaf_entries().size() * sizeof(simd::NodeEntry) / bytes_per_cell);
   nodes.exact_begin.push_back(static_cast<std::uint32_t>(nodes.exact_entries.size()));
   nodes.exact_entries.insert(nodes.exact_entries.end(), classifier.leaf_entries().begin(),
                              classifier.leaf_entries().end());
@@ -264,9 +327,6 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
   const std::size_t first_corners = nodes.corners.size();
   const std::size_t first_exact = nodes.exact_begin.size();
   const std::size_t first_entry = nodes.exact_entries.size();
-  if (first_entry + part.exact_entries.size() > 0xFFFFFFFFu) {
-    throw Error("The background grid has too many exact cells: raise its tolerance.");
-  }
   const auto moved = [&](NodeCode code) {
     const std::uint32_t index = index_of(code);
     switch (kind_of(code)) {
@@ -291,6 +351,7 @@ void GridBuilder::append_subtree(const Nodes& part, NodeCode part_root, const Op
   nodes.exact_entries.insert(nodes.exact_entries.end(), part.exact_entries.begin(),
                              part.exact_entries.end());
   nodes.depth = std::max(nodes.depth, part.depth);
+  nodes.undecided_tolerance = std::max(nodes.undecided_tolerance, part.undecided_tolerance);
   set_code(place, moved(part_root));
 }
 

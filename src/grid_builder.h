@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "background_grid.h"
+#include "cell_budget.h"
 #include "cell_classifier.h"
 
 namespace meshgrow {
@@ -18,7 +19,12 @@ class GridBuilder {
   GridBuilder(const FacetTree& tree, const GridCube& cube, double size_limit,
               const GridOptions& options);
 
+  /// Refines as deep as needed; if that takes too many cells, as deep as max_cells() allow.
   GridNodes build();
+
+  std::size_t max_cells() const { return max_cells_; }
+  /// Whether the grid that was built is less deep than it should be.
+  bool is_limited() const { return is_limited_; }
 
  private:
   using NodeCode = GridNodeCode;
@@ -47,6 +53,9 @@ class GridBuilder {
 
   /// `thread`: its number in the team that works on this grid; who calls may be one of others.
   CellClassifier& own_classifier(int thread);
+  bool fits(int max_depth);
+  void join(const std::vector<OpenCell>& open, const std::vector<NodeCode>& roots,
+            std::vector<Nodes>& parts);
   std::vector<OpenCell> build_top();
   NodeCode build_subtree(const GridCell& cell, const FacetTree::Smallest& ruling,
                          const CellCandidates& candidates, Whereabouts whereabouts,
@@ -55,8 +64,11 @@ class GridBuilder {
   std::array<Whereabouts, 8> of_children(const std::array<GridCell, 8>& children,
                                          const Whereabouts& parent) const;
   Vec3 point_of_reference(const GridCell& cell) const;
-  static NodeCode append_leaf(Verdict verdict, const GridCell& cell,
-                              const CellClassifier& classifier, Nodes& nodes);
+  NodeCode append_leaf(Verdict verdict, const GridCell& cell, const CellClassifier& classifier,
+                       Nodes& nodes) const;
+  NodeCode append_undecided(const GridCell& cell, const FacetTree::Smallest& ruling,
+                            Nodes& nodes) const;
+  std::size_t append_block(Nodes& nodes) const;
   void append_subtree(const Nodes& part, NodeCode part_root, const OpenCell& place);
   void set_code(const OpenCell& place, NodeCode code);
 
@@ -66,6 +78,11 @@ class GridBuilder {
   const GridOptions& options_;
   Nodes nodes_;
   double tolerance_;
+  std::size_t max_cells_;
+  double smallest_start_size_;
+  int max_depth_ = max_grid_depth;
+  bool is_limited_ = false;
+  std::unique_ptr<CellBudget> budget_;
   std::vector<std::unique_ptr<CellClassifier>> classifiers_;  ///< one a thread
 };
 

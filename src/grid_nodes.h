@@ -37,6 +37,9 @@ struct GridNodes {
   std::vector<std::uint32_t> exact_begin;      ///< one more than exact leaves
   std::vector<simd::NodeEntry> exact_entries;  ///< parts of the tree
   int depth = 0;
+  /// Of cells that were not refined further, though they should: the relative tolerance that
+  /// interpolating between exact sizes at their corners would have there.
+  double undecided_tolerance = 0.0;
 };
 
 /// The nodes of one depth, or the leaves above it, side by side: spares the way down to them.
@@ -57,6 +60,11 @@ struct GridStatistics {
   int depth = 0;
   std::size_t bytes = 0;  ///< without the tree
   double seconds = 0.0;   ///< wall time of building
+  // Not stored in files:
+  std::size_t max_cells = 0;  ///< that it was allowed
+  bool is_limited = false;    ///< it would have more, if it were allowed
+  /// Relative, of a grid in which every cell is interpolated; what the tree answers is exact.
+  double tolerance = 0.0;
 };
 
 /// A grid as it is asked, in memory or in a file. Block 0 stands above the root: its first child is

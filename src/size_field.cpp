@@ -6,6 +6,7 @@
 #include "error.h"
 #include "expected_elements.h"
 #include "growth_law.h"
+#include "number_text.h"
 #include "parallel.h"
 #include "start_sizes/curvature_start_sizes.h"
 #include "start_sizes/fixed_start_sizes.h"
@@ -384,8 +385,19 @@ void SizeField::build_grid(std::size_t index, Group& group) const {
     grid_options.progress = [this, what](double done) { options_.progress(what, done); };
   }
   grid_options.region = region_of(group);
+  grid_options.max_cells = options_.max_cells;
   group.grid =
       std::make_shared<BackgroundGrid>(group.tree, group.size_limit, box_of(group), grid_options);
+  const BackgroundGrid::Statistics& grid = group.grid->statistics();
+  if (grid.is_limited && options_.warn) {
+    options_.warn("The background grid of " +
+                  entity_names({group.entities.rbegin(), group.entities.rend()}, 2) +
+                  " needs more than " + grouped_digits(grid.max_cells) +
+                  " cells and is coarser than it should be: sizes keep the tolerance " +
+                  shortest(options_.tolerance) +
+                  ", but more of them are searched for in the facets, which takes longer; raise "
+                  "max_cells or the tolerance.");
+  }
 }
 
 // ==== Answers

@@ -29,13 +29,16 @@ enum class Evaluator {
 struct FieldOptions {
   double tolerance = 0.05;  ///< of the background grids, relative
   Evaluator evaluator = Evaluator::automatic;
-  int threads = 0;  ///< that build grids; 0: OMP_NUM_THREADS, else all processors
+  int threads = 0;            ///< that build grids; 0: OMP_NUM_THREADS, else all processors
+  std::size_t max_cells = 0;  ///< of each grid; see GridOptions
   /// The triangles of the boundary meshes of volumes, those of a face that two of them share twice;
   /// empty if a face has no mesh. Asked, where there is such a function, when a grid is built, and
   /// spares the cells outside.
   std::function<std::vector<std::array<Vec3, 3>>(const std::vector<Entity>&)> boundary;
   /// Called while a grid is built, from the building thread only: what is built, finished fraction.
   std::function<void(const std::string&, double)> progress;
+  /// Told in a sentence, from the building thread, of a grid that max_cells kept from refinement.
+  std::function<void(const std::string&)> warn;
 };
 
 /// The walls of a region in which a proximity size function measures gaps.

@@ -22,13 +22,22 @@ void check_usage(int failed, const std::string& where = "") {
 }
 
 /// What is wrong with it, if anything: for runs, too, that build no field.
-std::string wrong_tolerance(const std::string& text) {
+template <typename Check>
+std::string what_is_wrong(const std::string& text, Check check) {
   try {
-    check_tolerance(std::strtod(text.c_str(), nullptr));
+    check(std::strtod(text.c_str(), nullptr));
     return "";
   } catch (const Error& error) {
     return error.what();
   }
+}
+
+std::string wrong_tolerance(const std::string& text) {
+  return what_is_wrong(text, check_tolerance);
+}
+
+std::string wrong_max_cells(const std::string& text) {
+  return what_is_wrong(text, check_max_cells);
 }
 
 }  // namespace
@@ -50,6 +59,10 @@ void add_field_options(CLI::App& command, FieldArguments& arguments) {
       .add_option("--tolerance", arguments.tolerance, "Relative tolerance of the background grid")
       ->check(wrong_tolerance)
       ->capture_default_str();
+  command
+      .add_option("--max-cells", arguments.max_cells,
+                  "Most cells of a background grid; 0: as many as fit into memory")
+      ->check(wrong_max_cells);
   command
       .add_option("--evaluator", arguments.evaluator,
                   "Who answers sizes: exact (a tree of facets), grid (a background grid) or "
@@ -84,7 +97,8 @@ void check_no_field_options(const std::string& path, const FieldArguments& argum
   const FieldArguments standard;
   if (!arguments.size_functions.empty() || !arguments.file.empty() ||
       arguments.defaults_limit != 0.0 || arguments.tolerance != standard.tolerance ||
-      arguments.evaluator != standard.evaluator || arguments.strict || arguments.calibrate) {
+      arguments.max_cells != standard.max_cells || arguments.evaluator != standard.evaluator ||
+      arguments.strict || arguments.calibrate) {
     throw UsageError(path +
                      " is a saved size field with functions and options of its own: leave out "
                      "--size-function, --defaults, --tolerance, --evaluator and the like.");
@@ -99,6 +113,7 @@ FieldPointer make_field(const FieldArguments& arguments, const std::vector<std::
   FieldPointer field(meshgrow_field_create());
   check(field ? 0 : 1);
   check_usage(meshgrow_field_set_option(field.get(), "tolerance", arguments.tolerance));
+  check_usage(meshgrow_field_set_option(field.get(), "max_cells", arguments.max_cells));
   const double evaluator = arguments.evaluator == "exact"  ? 2.0
                            : arguments.evaluator == "grid" ? 1.0
                                                            : 0.0;

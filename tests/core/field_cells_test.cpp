@@ -192,6 +192,19 @@ TEST(FieldCells, InterpolateTheSmallestSizeWithinTheTolerance) {
   }
 }
 
+TEST(FieldCells, ThatMayBeFewWarnOfTheToleranceTheyReach) {
+  SizeField field = two_functions(Evaluator::exact);
+  std::vector<std::string> warnings;
+  field.options().warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
+  const std::size_t needed = field_cells(field, std::nullopt, CellUse::interpolate).cells.size();
+  EXPECT_TRUE(warnings.empty());
+  field.options().max_cells = needed / 10;
+  EXPECT_LE(field_cells(field, std::nullopt, CellUse::interpolate).cells.size(), needed / 10);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find(" % instead of 5 %; raise max_cells"), std::string::npos)
+      << warnings[0];
+}
+
 TEST(FieldCells, OfOneEntityAreThoseOfItsGroup) {
   const SizeField field = two_functions(Evaluator::exact);
   const FieldCells cells = field_cells(field, right_volume, CellUse::interpolate);

@@ -38,6 +38,10 @@ class SizeField:
         a mesh size function whose source has no mesh is an error instead of a warning.
     threads
         that build grids; 0 takes all.
+    max_cells
+        of each background grid, 40 bytes a cell; 0: as many as half of the available memory holds
+        while they are built. A grid that needs more is coarser, with a warning in Gmsh's log: sizes
+        keep the tolerance, but more of them are searched for in the facets.
     calibrate
         corrects what Gmsh is told by measured factors, so that its edges get the length asked for:
         without, they are 1.3 times as long in volumes.
@@ -50,7 +54,7 @@ class SizeField:
 
     def __init__(self, tolerance: float = 0.05, evaluator: str = "auto", strict: bool = False,
                  threads: int = 0, progress: Optional[Callable[[str], Any]] = None,
-                 calibrate: bool = False) -> None:
+                 calibrate: bool = False, max_cells: int = 0) -> None:
         self._raised = Raised()
         self._handle = lib.meshgrow_field_create()
         check(not self._handle)
@@ -61,6 +65,7 @@ class SizeField:
         self._set("evaluator", evaluators.index(evaluator))
         self._set("strict", strict)
         self._set("threads", threads)
+        self._set("max_cells", max_cells)
         self._set("calibrate", calibrate)
         # Both callbacks are kept as long as the field, which calls them.
         self._stop_request = STOP_REQUEST(self._raised.stop_request())
