@@ -139,12 +139,11 @@ std::map<Entity, CurveIntervals> CurveAdjuster::intervals_now(const std::set<Ent
         const bool is_prescribed = prescribed != constraints_.prescribed_intervals.end();
         const int count = interval_count(curve);
         CurveIntervals intervals;
-        // Of itself Gmsh gives curves beside recombined surfaces even numbers: an odd one was
-        // prescribed (for an arc, which the .geo text leaves out).
-        const bool beside = beside_recombined.count(curve) > 0;
-        intervals.even = !is_prescribed && beside && count % 2 == 0;
-        intervals.fixed =
-            is_prescribed || (beside && count % 2 != 0) || (count > 0 && stage.count(curve) == 0);
+        // Gmsh gives curves beside recombined surfaces even numbers, but for short ones and where
+        // it drops points that are too near; one that is prescribed for an arc, which the .geo text
+        // leaves out, shows by not following its sizes.
+        intervals.even = !is_prescribed && beside_recombined.count(curve) > 0 && count % 2 == 0;
+        intervals.fixed = is_prescribed || (count > 0 && stage.count(curve) == 0);
         intervals.count = count > 0 ? count : is_prescribed ? prescribed->second : 1;
         result[curve] = intervals;
       }

@@ -209,3 +209,26 @@ def test_options_are_as_before_after_adjusting():
         field.generate(2)
         assert [gmsh.option.getNumber("Mesh.MeshSize" + name) for name in
                 ("Min", "Max", "Factor")] == [0.01, 0.4, 0.9]
+
+
+def test_odd_numbers_of_gmsh_itself_beside_quads_may_be_changed():
+    """Two mapped faces of quadrangles, left and right of a curve; Gmsh sizes the right one alone."""
+    models.start("two mapped faces")
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.8)
+    geo = gmsh.model.geo
+    low, high = ([geo.addPoint(x, y, 0) for x in (0, 0.5, 3.5)] for y in (0, 2))
+    across = [geo.addLine(a, b) for a, b in zip(low, high)]
+    bottoms, tops = ([geo.addLine(line[i], line[i + 1]) for i in (0, 1)] for line in (low, high))
+    faces = [geo.addPlaneSurface([geo.addCurveLoop([bottoms[i], across[i + 1], -tops[i],
+                                                    -across[i]])]) for i in (0, 1)]
+    geo.synchronize()
+    for face in faces:
+        gmsh.model.mesh.setTransfiniteSurface(face)
+        gmsh.model.mesh.setRecombine(2, face)
+    field = meshgrow.SizeField()
+    field.add_fixed([(0, high[0])], [(2, faces[0])], 0.03, 1.2, 0.12)
+    field.generate(2)
+    for i, face in enumerate(faces):
+        counts = [element_count((1, curve)) for curve in (bottoms[i], tops[i], across[i])]
+        assert counts[0] == counts[1]
+        assert element_count((2, face)) == counts[0] * counts[2]
