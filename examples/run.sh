@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 # In the order of the paper's figures; then real parts, then ways to use it.
 all=(airfoil volume_in_volume figure8 two_faces imported_face assembly real_parts scanned_surface
   terrain crack earlier_run callbacks plain_gmsh with_pygmsh size_functions stock_gmsh_serve
-  stock_gmsh_view sweep_dask)
+  stock_gmsh_serve_3d stock_gmsh_view sweep_dask)
 for example in "$@"; do
   if [[ " ${all[*]} " != *" $example "* ]]; then
     printf "error: there is no example '%s': give one of %s.\n" "$example" "${all[*]}" >&2

@@ -12,6 +12,9 @@ if command -v clang-format >/dev/null; then
   git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 fi
 
+say "Checking the types of the Python package"
+"$build/venv/bin/mypy" --strict --cache-dir "$build/mypy" gmsh_plugin/python/meshgrow
+
 say "Testing"
 results=$build/test-results.txt
 status=0

@@ -39,7 +39,7 @@ install_packages() {
   if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null ||
       fail "these packages are missing: ${missing[*]}; install them as root, then run this again."
-    sudo=(sudo)
+    sudo=(sudo env DEBIAN_FRONTEND=noninteractive)
   fi
   # The documentation of gmsh-doc holds the example models; slim images leave documentation out.
   export DEBIAN_FRONTEND=noninteractive
@@ -52,13 +52,13 @@ install_packages() {
 make_python() {
   python_debian=/usr/bin/python3
   python_newest=$build/venv/bin/python
-  local complete=$build/venv/complete-3  # another number when other packages are wanted
+  local complete=$build/venv/complete-4  # another number when other packages are wanted
   if [ ! -e "$complete" ]; then
     say "Installing the newest Gmsh from PyPI into $build/venv"
     mkdir -p "$build"
     "$python_debian" -m venv "$build/venv" &&
       "$build/venv/bin/pip" install --quiet --disable-pip-version-check gmsh numpy pytest pillow \
-        pygmsh meshio distributed matplotlib jinja2 ||
+        pygmsh meshio distributed matplotlib jinja2 mypy ||
       fail "the newest gmsh could not be installed from PyPI."
     touch "$complete"
   fi

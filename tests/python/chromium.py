@@ -43,8 +43,10 @@ LISTENER = """
 
 
 def program():
-    """Path of Chromium, or None."""
-    return shutil.which("chromium") or shutil.which("chromium-browser")
+    """Path of Chromium."""
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert path, "Chromium is not installed: tests/run.sh installs it"
+    return path
 
 
 def look_at(page, folder):
