@@ -1,10 +1,12 @@
 #include "field_arguments.h"
 
 #include <CLI/Validators.hpp>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "background_grid.h"
 #include "onelab_functions.h"
@@ -75,15 +77,36 @@ void add_field_options(CLI::App& command, FieldArguments& arguments) {
                    "Correct sizes by measured factors: Gmsh's edges get the length asked for");
 }
 
+namespace {
+
+/// Of a file of size functions; more is a wrong file, and might fill the memory.
+constexpr std::size_t most_bytes = 64 << 20;
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  std::array<char, 1 << 16> part;
+  while (file && text.size() <= most_bytes) {
+    file.read(part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (text.size() > most_bytes) {
+    throw UsageError(path + " has more than 64 MB: give a file of size functions, one a line.");
+  }
+  if (!file.eof()) {
+    throw UsageError("Cannot read " + path + " (" + std::strerror(errno) +
+                     "): give a file of size functions, one a line.");
+  }
+  return text;
+}
+
+}  // namespace
+
 std::vector<std::string> size_function_texts(const FieldArguments& arguments) {
   std::vector<std::string> result = arguments.size_functions;
   if (!arguments.file.empty()) {
-    std::ifstream file(arguments.file);
-    if (!file) {
-      throw UsageError("Cannot read " + arguments.file + " (" + std::strerror(errno) +
-                       "): give a file of size functions, one a line.");
-    }
-    for (std::string line; std::getline(file, line);) {
+    std::istringstream lines(text_of(arguments.file));
+    for (std::string line; std::getline(lines, line);) {
       const std::size_t first = line.find_first_not_of(" \t\r");
       if (first != std::string::npos && line[first] != '#') {
         result.push_back(line.substr(first, line.find_last_not_of(" \t\r") + 1 - first));

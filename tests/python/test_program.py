@@ -163,6 +163,13 @@ def test_unreadable_model(tmp_path, content, words):
 def test_unreadable_file_of_size_functions(box, tmp_path):
     assert_refused(run("mesh", box, "-o", tmp_path / "out.msh", "--size-functions",
                        tmp_path / "missing.txt"), "missing.txt")
+    assert_refused(run("mesh", box, "-o", tmp_path / "out.msh", "--size-functions", tmp_path),
+                   "directory")
+
+
+def test_an_endless_file_of_size_functions_fills_no_memory(box, tmp_path):
+    assert_refused(run("mesh", box, "-o", tmp_path / "out.msh", "--size-functions", "/dev/zero"),
+                   "/dev/zero has more than 64 MB")
 
 
 def test_unwritable_output(box, tmp_path):
