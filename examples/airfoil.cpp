@@ -101,6 +101,7 @@ std::pair<int, int> add_air(const std::vector<int>& airfoil) {
   const std::array<int, 4> rim = {geo::addPoint(0.5 + far, 0, 0), geo::addPoint(0.5, far, 0),
                                   geo::addPoint(0.5 - far, 0, 0), geo::addPoint(0.5, -far, 0)};
   std::vector<int> arcs;
+  arcs.reserve(rim.size());
   for (int i = 0; i < 4; ++i) {
     arcs.push_back(geo::addCircleArc(rim[i], center, rim[(i + 1) % 4]));
   }

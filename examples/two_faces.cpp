@@ -96,7 +96,7 @@ int main(int argc, char** argv) try {
   const std::vector<std::string> words(argv + 1, argv + argc);
   gmsh::initialize();
   gmsh::option::setNumber("General.Verbosity", 2);
-  run(words.size() > 0 ? words[0] : "two_faces.msh", words.size() > 1 ? words[1] : "edge",
+  run(!words.empty() ? words[0] : "two_faces.msh", words.size() > 1 ? words[1] : "edge",
       words.size() > 2 ? words[2] : "triangles");
   gmsh::finalize();
   return 0;

@@ -62,7 +62,7 @@ class GmshArrays {
 };
 
 std::string take_string(char* text) {
-  const std::string result = text == nullptr ? "" : text;
+  std::string result = text == nullptr ? "" : text;
   library().free(text);
   return result;
 }
@@ -159,6 +159,7 @@ bool is_4_8() {
 
 void initialize(const std::vector<std::string>& arguments) {
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) {
     argv.push_back(const_cast<char*>(argument.c_str()));
   }

@@ -460,7 +460,7 @@ class SizeField {
   /// there is none. Returns its name.
   std::string named(const std::string& name) {
     const std::size_t last = meshgrow_field_function_count(c_field()) - 1;
-    const std::string number = detail::take_text(meshgrow_field_function_name(c_field(), last));
+    std::string number = detail::take_text(meshgrow_field_function_name(c_field(), last));
     if (name.empty()) {
       return number;
     }

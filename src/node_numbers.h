@@ -48,8 +48,8 @@ class NodeNumbers {
   /// Of the point itself, or the one where it belongs. (Open addressing: half as long as a map.)
   std::size_t find_slot(const Vec3& p) const {
     std::size_t slot = hash(p) & (slots_.size() - 1);
-    // To the bit, also for what is not a number.
     while (slots_[slot] != empty &&
+           // To the bit, also for what is not a number. NOLINTNEXTLINE(*-memory-comparison)
            std::memcmp(points_[slots_[slot]].data(), p.data(), 3 * sizeof(double)) != 0) {
       slot = (slot + 1) & (slots_.size() - 1);
     }

@@ -117,6 +117,7 @@ FailCondition parse_fail_condition(const std::string& text) {
 
 std::vector<FailCondition> parse_fail_conditions(const std::vector<std::string>& texts) {
   std::vector<FailCondition> result;
+  result.reserve(texts.size());
   for (const std::string& text : texts) {
     result.push_back(parse_fail_condition(text));
   }

@@ -32,9 +32,7 @@ int fail(const std::exception& error, meshgrow::cli::ExitCode code) {
   return code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "Meshes Gmsh models with sizes that grow from what is meshed already.\n"
       "A size function is one line of text, for example\n"
@@ -71,4 +69,12 @@ int main(int argc, char** argv) {
     return fail(error, meshgrow::cli::work_failed);
   }
   return meshgrow::cli::done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  return run(argc, argv);
+} catch (const std::exception& error) {
+  return fail(error, meshgrow::cli::work_failed);
 }

@@ -46,7 +46,7 @@ class AnswerStream {
 
 void tell(const std::string& sentence) { std::cerr << "meshgrow: " << sentence << std::endl; }
 
-void no_sizes(const Vec3*, std::size_t count, double* sizes) {
+void no_sizes(const Vec3* /*points*/, std::size_t count, double* sizes) {
   std::fill(sizes, sizes + count, SizeField::no_size);
 }
 

@@ -462,7 +462,7 @@ struct LeastRatioSearch {
     return query->ratio >= query->enough;
   }
   float limit() const { return query->ratio; }
-  void prefetch(std::uint32_t) const {}
+  void prefetch(std::uint32_t /*block*/) const {}
 };
 
 void least_ratio(const WideTree& tree, const NodeEntry* entries, int count, LeastRatio& query) {
