@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -344,11 +345,11 @@ std::string word_of(Value value, const Choices<Value>& choices) {
       ->first;
 }
 
-/// "Surface{7,9}, Volume{2}"
+/// "Surface{7,9}, Volume{2}": sorted, each once, as they are read.
 std::string selection_text(const std::vector<Entity>& entities) {
   std::string text;
   int dim = -1;
-  for (const Entity& entity : entities) {
+  for (const Entity& entity : std::set<Entity>(entities.begin(), entities.end())) {
     if (entity.dim == dim) {
       text.back() = ',';
     } else {

@@ -29,7 +29,8 @@ namespace meshgrow {
 SizeFunction parse_size_function(const std::string& text, const Topology& topology);
 
 /// The line of text that reads as this function, in the same numbers to the bit; without the name
-/// if the field gave it. Thread-safe.
+/// if the field gave it. Entities are sorted, each once, so that what is read is written the same.
+/// Thread-safe.
 std::string size_function_text(const SizeFunction& function);
 
 /// Reads entities alone, such as `Volume{2}, Physical Surface{"inlet"}`; sorted, each once.

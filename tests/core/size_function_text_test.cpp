@@ -180,6 +180,14 @@ TEST(SizeFunctionText, WhatIsWrittenReadsTheSame) {
   }
 }
 
+TEST(SizeFunctionText, EntitiesInAnyOrderAreWrittenAsTheyAreRead) {
+  SizeFunction function = parse("mesh source Surface{7} attach Volume{2} growth 1.2 limit 2");
+  function.sources = {{2, 8}, {1, 4}, {2, 7}, {2, 8}};
+  const std::string text = size_function_text(function);
+  EXPECT_EQ(text, "mesh source Curve{4}, Surface{7,8} attach Volume{2} growth 1.2 limit 2");
+  EXPECT_EQ(size_function_text(parse(text)), text);
+}
+
 TEST(SizeFunctionText, IsWrittenAsAPersonWould) {
   EXPECT_EQ(size_function_text(parse("fixed size 0.1 source Surface{8,7},Curve{4} limit 2 "
                                      "attach Volume{2} growth 1.2")),
