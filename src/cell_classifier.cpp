@@ -107,11 +107,15 @@ bool CellClassifier::never_too_coarse(const GridCell& cell) {
 }
 
 bool CellClassifier::not_much_too_fine(const GridCell& cell) {
-  bool proven = true;
+  // One of the two at all corners: the smaller one of both is not convex.
+  bool proven_by_ruling = true;
+  bool proven_by_limit = true;
   for (int i = 0; i < 8; ++i) {
-    proven =
-        proven && ruling_corners_[i] <= (1.0 + 2.0 * tolerance_) * scale_ * cell.corner_values[i];
+    const double enough = (1.0 + 2.0 * tolerance_) * scale_ * cell.corner_values[i];
+    proven_by_ruling = proven_by_ruling && ruling_corners_[i] <= enough;
+    proven_by_limit = proven_by_limit && size_limit_ <= enough;
   }
+  const bool proven = proven_by_ruling || proven_by_limit;
   if (proven || cell.depth == max_grid_depth) {
     return proven;
   }
@@ -146,7 +150,7 @@ void CellClassifier::find_ruling_corners() {
                                     static_cast<int>(ruling_.facet % simd::lanes), kernel_cell_,
                                     sizes.data());
   for (int i = 0; i < 8; ++i) {
-    ruling_corners_[i] = std::min(size_limit_, sizes[i] * tree_.unit());
+    ruling_corners_[i] = sizes[i] * tree_.unit();
   }
 }
 
@@ -212,6 +216,7 @@ simd::Survivors CellClassifier::survivors_below(double factor,
     query.cell.reciprocals[i] = as_reciprocal(size);
     largest = std::max(largest, size);
   }
+  largest = std::min(largest, size_limit_ * factor / tree_.unit());
   query.largest = static_cast<float>(largest * (1.0 + rounding));
   query.entries = room.data();
   query.capacity = static_cast<int>(room.size());

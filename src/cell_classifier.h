@@ -25,6 +25,9 @@ using CellCandidates = std::vector<simd::NodeEntry>;
 ///   corners. Exact values may be too large by (1 + t)² even so: they are made smaller as needed;
 /// - h ≤ (1 + 2t) u if h_g ≤ (1 + 2t) u at the corners (h ≤ h_g ≤ interpolated h_g).
 ///
+/// The size limit is convex as well and may stand for h_g, but at all corners: the smaller of the
+/// two at each corner would prove nothing, as their minimum is not convex.
+///
 /// Beside them the Lipschitz bound |u − h| ≤ (√3/2) α s for a cell of edge s, which ends refinement
 /// whatever the facets are. Boxes are descended into only as far as they do not decide. Uses
 /// scratch memory: one object per thread.
@@ -84,7 +87,7 @@ class CellClassifier {
 
   const CellCandidates* candidates_ = nullptr;
   FacetTree::Smallest ruling_;            ///< at the centre; no facet: the size limit
-  std::array<double, 8> ruling_corners_;  ///< its sizes at the corners: upper bounds of the field
+  std::array<double, 8> ruling_corners_;  ///< its sizes at the corners, whatever the limit
   simd::CellCorners kernel_cell_;
   double scale_ = 1.0;
   std::vector<simd::NodeEntry> leaf_entries_;

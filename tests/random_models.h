@@ -158,7 +158,9 @@ inline double extent(const Facet& facet) {
 }
 
 inline double random_growth_rate(Random& random) {
-  return one_of(random, std::array<double, 8>{1.0, 1.0 + 1e-7, 1.05, 1.2, 1.2, 1.5, 2.0, 8.0});
+  return random_index(random, 3) == 0
+             ? uniform(random, 1.0, 2.0)
+             : one_of(random, std::array<double, 6>{1.0, 1.0 + 1e-7, 1.05, 1.2, 1.5, 8.0});
 }
 
 /// Start sizes as of a mesh, one for all, or any; slopes of one growth rate or of several.
@@ -179,8 +181,8 @@ inline SizedFacets with_random_sizes(Random& random, const std::vector<Facet>& f
   return result;
 }
 
-/// Below all sizes, among them, above them or none.
-inline double random_limit(Random& random, const SizedFacets& facets) {
+/// None, below all sizes, above the smallest, or reached in the middle of the box.
+inline double random_limit(Random& random, const SizedFacets& facets, const Box& box) {
   double smallest = facets.front().start_size;
   for (const SizedFacet& f : facets) {
     smallest = std::min(smallest, f.start_size);
@@ -190,6 +192,15 @@ inline double random_limit(Random& random, const SizedFacets& facets) {
       return 1e22;
     case 1:
       return 0.5 * smallest;
+    case 2:
+    case 3: {
+      const Vec3 p = random_in_box(random, box);
+      double size = 1e22;
+      for (const SizedFacet& f : facets) {
+        size = std::min(size, f.size_at(p));
+      }
+      return size;
+    }
     default:
       return smallest * log_uniform(random, 1.5, 1e3);
   }
@@ -267,8 +278,8 @@ inline RandomModel random_model(Random& random, std::size_t most_facets) {
     facets = flattened(facets, static_cast<int>(flat_axes), uniform(random, -1.0, 1.0));
   }
   model.facets = with_random_sizes(random, facets);
-  model.size_limit = random_limit(random, model.facets);
   model.box = random_box_for(random, model.facets);
+  model.size_limit = random_limit(random, model.facets, model.box);
   std::ostringstream text;
   text << "kind " << kind << ", " << model.facets.size() << " facets, limit " << model.size_limit;
   model.name = text.str();

@@ -42,7 +42,7 @@ double rounding(const RandomModel& model, const Vec3& p, double times) {
 
 TEST(ExactSizeProperties, AreTheMinimumOverAllFacetsToTheBit) {
   // Float only rules facets out; among the others double decides as here.
-  test::for_random_rounds(150, [](Random& random) {
+  test::for_random_rounds(80, [](Random& random) {
     const RandomModel model = test::random_model(random, most_facets);
     SCOPED_TRACE(model.name);
     const FacetTree tree(model.facets, 1 + static_cast<int>(test::random_index(random, 2)));

@@ -106,6 +106,69 @@ TEST(GridProperties, AreNeverCoarserThanAskedAtAnyPoint) {
   });
 }
 
+TEST(GridProperties, AreNeverCoarserThanAskedWhereTheLimitCutsThroughCells) {
+  // Few facets, each with a slope of its own, and a limit that is reached in the middle of them.
+  test::for_random_rounds(100, [](Random& random) {
+    RandomGrid drawn(random, 20);
+    drawn.model.facets.clear();
+    for (std::size_t i = 8 * (1 + test::random_index(random, 4)); i > 0; --i) {
+      const Vec3 a = test::random_in_box(random, test::cube(2.0));
+      const Vec3 b = a + test::random_in_ball(random, 2.0);
+      drawn.model.facets.push_back({Facet::segment(a, b), test::log_uniform(random, 1e-3, 0.5),
+                                    test::uniform(random, 0.02, 0.9)});
+    }
+    drawn.model.box = test::cube(1.0);
+    const Vec3 reached = test::random_in_box(random, drawn.model.box);
+    drawn.model.size_limit = FacetTree(drawn.model.facets).size(reached);
+    SCOPED_TRACE(drawn.text);
+    const BackgroundGrid grid = drawn.build();
+    expect_never_coarser(grid, drawn.options.tolerance, points_for(random, drawn.model, grid, 500));
+  });
+}
+
+/// A steep plate and a gentle one that rules nowhere but between the steep one and the limit. At
+/// the centre of the cube the steep plate rules, at its corners that or the limit.
+RandomModel two_plates() {
+  const auto plate = [](double x, double start_size, double slope) {
+    return SizedFacet{Facet::triangle({x, -90, -90}, {x, 90, -90}, {x, 0, 180}), start_size, slope};
+  };
+  RandomModel model;
+  model.facets.assign(8, plate(-1.05, 0.05, 0.9));
+  model.facets.insert(model.facets.end(), 8, plate(-3.0, 0.097, 0.3));
+  model.size_limit = 1.29;
+  model.box = test::cube(1.0);
+  return model;
+}
+
+BackgroundGrid interpolating_grid(const RandomModel& model) {
+  GridOptions options;
+  options.threads = 1;
+  options.facets_per_exact_leaf = 0;
+  return BackgroundGrid(std::make_shared<const FacetTree>(model.facets), model.size_limit,
+                        model.box, options);
+}
+
+TEST(GridProperties, AreNeverCoarserThanAskedBetweenASteepSlopeAndTheLimit) {
+  RandomModel model = two_plates();
+  // At one corner a small point rules, so that the cube is divided.
+  model.facets.insert(model.facets.end(), 8, {Facet::point({-1, 1, 1}), 0.001, 0.9});
+  const BackgroundGrid grid = interpolating_grid(model);
+  Random random(1);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 1000; ++i) {
+    points.push_back(test::random_in_box(random, model.box));
+  }
+  expect_never_coarser(grid, GridOptions().tolerance, points);
+}
+
+TEST(GridProperties, AreNotMuchFinerThanAskedBetweenASteepSlopeAndTheLimit) {
+  const BackgroundGrid grid = interpolating_grid(two_plates());
+  for (double x = -0.99; x < 1.0; x += 0.01) {
+    const Vec3 p(x, 0.1, 0.2);
+    EXPECT_GE(grid.size(p) * (1.0 + 2.0 * GridOptions().tolerance), exact_size(grid, p)) << x;
+  }
+}
+
 TEST(GridProperties, AreNotMuchFinerThanAsked) {
   // At the centre of a cell that interpolates it is checked or proven (cell_classifier.h), and so
   // it is wherever facets answer; of other points 999 of 1000 are as good.
