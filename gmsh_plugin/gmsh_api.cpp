@@ -1,17 +1,17 @@
 #include "gmsh_api.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <utility>
 
 #include "gmsh_library.h"
+#include "restore.h"
 #include "temporary_directory.h"
 
 namespace meshgrow::gmsh {
 
 namespace {
-
-constexpr const char* verbosity = "General.Verbosity";
 
 GmshLibrary& library() { return GmshLibrary::instance(); }
 
@@ -87,6 +87,29 @@ class GmshStrings {
  private:
   char** data_ = nullptr;
   std::size_t size_ = 0;
+};
+
+/// Changes an option for the life of this object.
+class ChangedOption {
+ public:
+  ChangedOption(const char* name, double value) : name_(name), before_(option(name)) {
+    set_option(name_, value);
+  }
+  ~ChangedOption() {
+    restore([this] { set_option(name_, before_); });
+  }
+  ChangedOption(const ChangedOption&) = delete;
+  ChangedOption& operator=(const ChangedOption&) = delete;
+
+ private:
+  const char* name_;
+  double before_;
+};
+
+/// Keeps what Gmsh says out of the user's log.
+class Silence : ChangedOption {
+ public:
+  Silence() : ChangedOption("General.Verbosity", 0.0) {}
 };
 
 std::vector<Entity> to_entities(const std::vector<int>& dim_tags) {
@@ -194,16 +217,12 @@ double option(const std::string& name) {
 }
 
 double option_or(const std::string& name, double otherwise) {
-  const double told = option(verbosity);
-  set_option(verbosity, 0.0);  // or the missing option would be an error in the user's log
-  double value = otherwise;
+  const Silence silence;  // or the missing option would be an error in the user's log
   try {
-    value = option(name);
+    return option(name);
   } catch (const Error&) {
-    // This version has no such option.
+    return otherwise;  // this version has no such option
   }
-  set_option(verbosity, told);
-  return value;
 }
 
 void set_option(const std::string& name, double value) {
@@ -275,17 +294,14 @@ std::vector<Entity> embedded(const Entity& entity) {
 Box bounding_box(const Entity& entity) {
   Vec3 low;
   Vec3 high;
-  const double told = option(verbosity);
-  set_option(verbosity, 0.0);  // or a box that is empty would be an error in the user's log
+  const Silence silence;  // or a box that is empty would be an error in the user's log
   try {
     library().call("gmshModelGetBoundingBox", entity.dim, entity.tag, &low.x(), &low.y(), &low.z(),
                    &high.x(), &high.y(), &high.z());
   } catch (const Error&) {
     // A discrete entity without a mesh of its own, as when only some physical groups were saved.
-    low = Vec3::Constant(1.0);
-    high = Vec3::Zero();
+    return Box();
   }
-  set_option(verbosity, told);
   return (low.array() <= high.array()).all() ? Box(low, high) : Box();
 }
 
@@ -350,17 +366,8 @@ Nodes nodes_without_parameters(const Entity& entity) {
   return get_nodes(entity.dim, entity.tag, false, false);
 }
 Nodes nodes_with_boundary(const Entity& entity) {
-  // 4.8 warns of each node on a seam, though it gives parameters for it.
-  const double told = option(verbosity);
-  set_option(verbosity, 0.0);
-  try {
-    Nodes nodes = get_nodes(entity.dim, entity.tag, true, true);
-    set_option(verbosity, told);
-    return nodes;
-  } catch (...) {
-    set_option(verbosity, told);
-    throw;
-  }
+  const Silence silence;  // 4.8 warns of each node on a seam, though it gives parameters for it
+  return get_nodes(entity.dim, entity.tag, true, true);
 }
 Nodes all_nodes() { return get_nodes(-1, -1, false, false); }
 
@@ -462,22 +469,16 @@ void set_periodic_nodes(const std::vector<std::pair<Entity, PeriodicNodes>>& per
 }
 
 void generate(int dim) {
-  // Where an error is thrown (2, the default), Gmsh stays locked and meshes nothing more in the
-  // session, and 4.8 throws it out of parallel loops, which ends the process. With 1 it stops
-  // meshing and returns.
   constexpr const char* abort_on_error = "General.AbortOnError";
   const double users = option(abort_on_error);
   const std::string told_before = last_error();
-  if (users > 1.0) {
-    set_option(abort_on_error, 1.0);
-  }
-  try {
+  {
+    // Where an error is thrown (2, the default), Gmsh stays locked and meshes nothing more in the
+    // session, and 4.8 throws it out of parallel loops, which ends the process. With 1 it stops
+    // meshing and returns.
+    const ChangedOption no_throw(abort_on_error, std::min(users, 1.0));
     library().call("gmshModelMeshGenerate", dim);
-  } catch (...) {
-    set_option(abort_on_error, users);
-    throw;
   }
-  set_option(abort_on_error, users);
   const std::string error = last_error();
   if (users > 0.0 && !error.empty()) {
     throw Error("Gmsh: " + error +

@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "gmsh_api.h"
+#include "restore.h"
 
 namespace meshgrow {
 
@@ -22,20 +23,18 @@ CurrentModel::CurrentModel(const std::string& name) {
 }
 
 CurrentModel::~CurrentModel() {
-  try {
+  restore([this] {
     if (gmsh::current_model() != before_) {
       gmsh::set_current_model(before_);
     }
-  } catch (...) {
-    // Gmsh was finalized meanwhile: nothing is left to restore.
-  }
+  });
 }
 
 GmshState::~GmshState() {
-  try {
-    for (const auto& [name, value] : options_) {
-      gmsh::set_option(name, value);
-    }
+  for (const auto& [name, value] : options_) {
+    restore([&name = name, value = value] { gmsh::set_option(name, value); });
+  }
+  restore([this] {
     std::vector<Entity> shown;
     std::vector<Entity> hidden;
     for (const auto& [entity, visible] : visibility_) {
@@ -43,9 +42,7 @@ GmshState::~GmshState() {
     }
     gmsh::set_visible(shown, true);
     gmsh::set_visible(hidden, false);
-  } catch (...) {
-    // Gmsh was finalized meanwhile: nothing is left to restore.
-  }
+  });
 }
 
 void GmshState::set_option(const std::string& name, double value) {

@@ -6,6 +6,7 @@
 
 #include "gmsh_api.h"
 #include "gmsh_state.h"
+#include "restore.h"
 #include "temporary_directory.h"
 
 namespace meshgrow {
@@ -18,11 +19,7 @@ class ForeignPoint {
  public:
   ForeignPoint() : point_(gmsh::add_discrete_point()) {}
   ~ForeignPoint() {
-    try {
-      gmsh::remove_entity(point_);
-    } catch (...) {
-      // It was added a moment ago: there is nothing else that could be done.
-    }
+    restore([this] { gmsh::remove_entity(point_); });
   }
   ForeignPoint(const ForeignPoint&) = delete;
   ForeignPoint& operator=(const ForeignPoint&) = delete;

@@ -10,6 +10,7 @@
 #include "meshing_plan.h"
 #include "periodic_copies.h"
 #include "remesh.h"
+#include "restore.h"
 #include "stop_watch.h"
 
 namespace meshgrow {
@@ -143,12 +144,9 @@ void OrderedMesher::generate(int dim) {
   } catch (...) {
     model_field_.answers_.clear_scales();
     model_field_.answers_.set_boundary(nullptr);
-    try {
-      premeshed_.put_back_missing();
-      premeshed_.put_back_after_error();
-    } catch (...) {
-      // The first error is the one to tell.
-    }
+    restore([this] { premeshed_.put_back_missing(); });
+    restore([this] { premeshed_.put_back_after_error(); });
+    restore([this] { clear_unadjusted_curves(); });
     throw;
   }
 }
@@ -169,6 +167,7 @@ void OrderedMesher::start_again(const LeftEmpty& left) {
   premeshed_.keep_only(user_premeshed_);
   waiting_.clear();
   lost_faces_.clear();
+  unadjusted_.clear();
 }
 
 void OrderedMesher::run(const std::vector<MeshingPass>& plan) {
@@ -178,21 +177,20 @@ void OrderedMesher::run(const std::vector<MeshingPass>& plan) {
     stale_.insert(i);
   }
   model_field_.reported_.clear();
-  std::vector<Entity> stage;
   for (auto pass = plan.begin(); pass != plan.end(); ++pass) {
     const auto next = pass + 1;
     const bool curves_follow =
         std::any_of(next, plan.end(), [](const MeshingPass& later) { return later.dim == 1; });
-    run_pass(*pass, curves_follow);
     if (pass->dim == 1) {
-      std::copy_if(pass->entities.begin(), pass->entities.end(), std::back_inserter(stage),
+      std::copy_if(pass->entities.begin(), pass->entities.end(), std::back_inserter(unadjusted_),
                    [this](const Entity& curve) { return masters_.count(curve) == 0; });
     }
-    if (!stage.empty() && (next == plan.end() || next->stage != pass->stage)) {
-      adjust_curves(stage);
+    run_pass(*pass, curves_follow);
+    if (!unadjusted_.empty() && (next == plan.end() || next->stage != pass->stage)) {
+      adjust_curves(unadjusted_);
       // Gmsh reverses curves that the user wants reversed again in every pass.
-      premeshed_.keep(stage);
-      stage.clear();
+      premeshed_.keep(unadjusted_);
+      unadjusted_.clear();
     }
     if (!curves_follow) {
       mesh_lost_faces();
@@ -405,6 +403,17 @@ void OrderedMesher::adjust_curves(const std::vector<Entity>& stage) {
   if (!adjusted.empty()) {
     model_field_.tell("Adjusted " + entity_names(adjusted, 6) + " for mapped surfaces");
     mark_stale(adjusted);
+  }
+}
+
+void OrderedMesher::clear_unadjusted_curves() const {
+  for (const std::vector<Entity>& connected : adjuster_.connected_curves()) {
+    for (const Entity& curve : connected) {
+      if (std::count(unadjusted_.begin(), unadjusted_.end(), curve) > 0 &&
+          gmsh::has_elements(curve)) {
+        gmsh::clear_mesh({curve});
+      }
+    }
   }
 }
 

@@ -20,7 +20,8 @@ namespace meshgrow {
 /// from the boundary switched off, or only others, with the user's setting. Opposite sides of
 /// mapped surfaces are brought to the same number of intervals. What had a mesh at the beginning is
 /// left out of all passes and is unchanged at the end. Gmsh's options and visibility are restored,
-/// also on errors; what was meshed before an error is kept.
+/// also on errors; what was meshed before an error is kept, but for curves of mapped surfaces that
+/// were not adjusted yet.
 class OrderedMesher {
  public:
   /// The field's model must be the current one.
@@ -52,6 +53,9 @@ class OrderedMesher {
   void protect_discrete_faces(const std::vector<Entity>& volumes) const;
   void remove_protection(const Entity& volume) const;
   void adjust_curves(const std::vector<Entity>& stage);
+  /// After an error: curves of mapped surfaces that the run came not to adjust would be taken for
+  /// meshed beforehand by the next run, and not be adjusted any more.
+  void clear_unadjusted_curves() const;
   void keep_from_curve_passes(const std::vector<Entity>& surfaces);
   void keep_split_curves(const std::vector<Entity>& surfaces);
   void mesh_lost_faces();
@@ -76,6 +80,7 @@ class OrderedMesher {
   std::set<Entity> companions_;       ///< found to be meshed by Gmsh only along with others
   std::set<Entity> waiting_;          ///< companions that were due and have no mesh yet
   std::vector<Entity> lost_faces_;    ///< structured ones that curve passes took the mesh from
+  std::vector<Entity> unadjusted_;    ///< curves of the present stage
   std::set<std::size_t> stale_;       ///< functions with a source meshed since they were read
   int pass_count_ = 0;
   std::size_t planned_count_ = 0;

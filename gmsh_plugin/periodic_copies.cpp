@@ -8,6 +8,7 @@
 #include "gmsh_api.h"
 #include "model_reader.h"
 #include "premeshed_store.h"
+#include "restore.h"
 
 namespace meshgrow {
 
@@ -133,7 +134,9 @@ std::map<Entity, Entity> periodic_masters(const Topology& topology) {
   return result;
 }
 
-void copy_from_master(const Entity& copy, const Entity& master, const Topology& topology) {
+namespace {
+
+void lay_copy(const Entity& copy, const Entity& master, const Topology& topology) {
   const std::vector<double> rows = gmsh::periodic_nodes(copy).transformation;
   const Transformation move(rows);
   NodePairs pairs = pair_boundaries(copy, master, move, topology);
@@ -195,6 +198,19 @@ void copy_from_master(const Entity& copy, const Entity& master, const Topology& 
     periodic.master_nodes.push_back(there);
   }
   gmsh::set_periodic_nodes({{copy, periodic}});
+}
+
+}  // namespace
+
+void copy_from_master(const Entity& copy, const Entity& master, const Topology& topology) {
+  try {
+    lay_copy(copy, master, topology);
+  } catch (...) {
+    // Half a copy, or one of which Gmsh does not know which nodes correspond, would stop later
+    // runs.
+    restore([&copy] { gmsh::clear_mesh({copy}); });
+    throw;
+  }
 }
 
 }  // namespace meshgrow
