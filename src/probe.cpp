@@ -64,7 +64,7 @@ Probe SizeField::probe(const Entity& entity, const Vec3& p) const {
 }
 
 Probe SizeField::probe(const Vec3& p) const {
-  const auto is_around = [&](const Entity& entity) { return topology_.box(entity).contains(p); };
+  const auto is_around = [&](const Entity& entity) { return topology_->box(entity).contains(p); };
   Probe best;
   for (const Group& group : groups_) {
     if (!reach_of(group).contains(p)) {

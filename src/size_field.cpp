@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <type_traits>
 
 #include "error.h"
 #include "expected_elements.h"
@@ -17,7 +18,7 @@
 namespace meshgrow {
 
 SizeField::SizeField(Topology topology, FieldOptions options)
-    : topology_(std::move(topology)), options_(std::move(options)) {}
+    : topology_(std::make_shared<Topology>(std::move(topology))), options_(std::move(options)) {}
 
 std::string SizeField::function_name(std::size_t function) const {
   return meshgrow::function_name(functions_[function], function);
@@ -42,19 +43,21 @@ std::size_t SizeField::add(SizeFunction function) {
     check_name(function.name, functions_.size());
   }
   const std::size_t number = numbers_given_ + 1;
-  validate(function, meshgrow::function_name(function, number - 1), topology_);
-  topology_.closure(function.attachments);  // throws if a boundary is not in the model
-  topology_.closure(function.sources);
+  validate(function, meshgrow::function_name(function, number - 1), *topology_);
+  topology_->closure(function.attachments);  // throws if a boundary is not in the model
+  topology_->closure(function.sources);
   if (function.name.empty()) {
     function.name = std::to_string(number);
   }
-  functions_.push_back(std::move(function));
-  facets_.emplace_back();
-  facet_counts_.push_back(0);
-  origins_.emplace_back();
-  effective_.push_back(false);
-  regroup();
-  numbers_given_ = number;
+  all_or_nothing([&] {
+    functions_.push_back(std::move(function));
+    facets_.emplace_back();
+    facet_counts_.push_back(0);
+    origins_.emplace_back();
+    effective_.push_back(false);
+    regroup();
+    numbers_given_ = number;
+  });
   return functions_.size() - 1;
 }
 
@@ -64,43 +67,49 @@ void SizeField::modify(std::size_t function, SizeFunction definition) {
   } else if (definition.name != functions_[function].name) {
     check_name(definition.name, function);
   }
-  validate(definition, meshgrow::function_name(definition, function), topology_);
-  topology_.closure(definition.attachments);
-  topology_.closure(definition.sources);
-  functions_[function] = std::move(definition);
-  facets_[function].clear();
-  facet_counts_[function] = 0;
-  origins_[function] = FacetOrigins();
-  effective_[function] = false;
-  mark_changed(function);
-  regroup();
+  validate(definition, meshgrow::function_name(definition, function), *topology_);
+  topology_->closure(definition.attachments);
+  topology_->closure(definition.sources);
+  all_or_nothing([&] {
+    functions_[function] = std::move(definition);
+    facets_[function] = nullptr;
+    facet_counts_[function] = 0;
+    origins_[function] = FacetOrigins();
+    effective_[function] = false;
+    mark_changed(function);
+    regroup();
+  });
 }
 
 void SizeField::remove(std::size_t function) {
-  const auto at = static_cast<std::ptrdiff_t>(function);
-  functions_.erase(functions_.begin() + at);
-  facets_.erase(facets_.begin() + at);
-  facet_counts_.erase(facet_counts_.begin() + at);
-  origins_.erase(origins_.begin() + at);
-  effective_.erase(effective_.begin() + at);
-  const auto is_removed = [function](const Action& action) { return action.function == function; };
-  groups_.erase(std::remove_if(groups_.begin(), groups_.end(),
-                               [&](const Group& group) {
-                                 return std::any_of(group.actions.begin(), group.actions.end(),
-                                                    is_removed);
-                               }),
-                groups_.end());
-  const auto move_up = [function](std::size_t& index) { index -= index > function ? 1 : 0; };
-  for (Group& group : groups_) {
-    for (Action& action : group.actions) {
-      move_up(action.function);
+  all_or_nothing([&] {
+    const auto at = static_cast<std::ptrdiff_t>(function);
+    functions_.erase(functions_.begin() + at);
+    facets_.erase(facets_.begin() + at);
+    facet_counts_.erase(facet_counts_.begin() + at);
+    origins_.erase(origins_.begin() + at);
+    effective_.erase(effective_.begin() + at);
+    const auto is_removed = [function](const Action& action) {
+      return action.function == function;
+    };
+    groups_.erase(std::remove_if(groups_.begin(), groups_.end(),
+                                 [&](const Group& group) {
+                                   return std::any_of(group.actions.begin(), group.actions.end(),
+                                                      is_removed);
+                                 }),
+                  groups_.end());
+    const auto move_up = [function](std::size_t& index) { index -= index > function ? 1 : 0; };
+    for (Group& group : groups_) {
+      for (Action& action : group.actions) {
+        move_up(action.function);
+      }
+      move_up(group.limit.function);
+      for (Origin& origin : group.origins) {
+        move_up(origin.function);
+      }
     }
-    move_up(group.limit.function);
-    for (Origin& origin : group.origins) {
-      move_up(origin.function);
-    }
-  }
-  regroup();
+    regroup();
+  });
 }
 
 void SizeField::rename(std::size_t function, const std::string& name) {
@@ -122,6 +131,18 @@ std::size_t SizeField::find(const std::string& name) const {
               "\": " + (names.empty() ? "add one first." : "give one of " + names + "."));
 }
 
+template <typename Body>
+void SizeField::all_or_nothing(Body body) {
+  static_assert(std::is_nothrow_move_assignable_v<SizeField>);
+  SizeField before = *this;
+  try {
+    body();
+  } catch (...) {
+    *this = std::move(before);
+    throw;
+  }
+}
+
 void SizeField::regroup() {
   std::map<Entity, std::vector<Action>> actions_on;
   for (std::size_t i = 0; i < functions_.size(); ++i) {
@@ -131,8 +152,8 @@ void SizeField::regroup() {
         source_volumes.push_back(source);
       }
     }
-    const std::set<Entity> inside = topology_.closure(source_volumes);
-    for (const Entity& entity : topology_.closure(functions_[i].attachments)) {
+    const std::set<Entity> inside = topology_->closure(source_volumes);
+    for (const Entity& entity : topology_->closure(functions_[i].attachments)) {
       actions_on[entity].push_back({i, inside.count(entity) > 0});
     }
   }
@@ -206,11 +227,14 @@ void SizeField::set_facets(std::size_t function, SizedFacets facets, FacetOrigin
   const Kind kind = functions_[function].kind;
   const bool needs_facets = kind == Kind::mesh || kind == Kind::fixed;
   const bool effective = !needs_facets || !facets.empty();
-  if (facets == facets_[function] && effective == effective_[function]) {
+  const std::shared_ptr<const SizedFacets>& before = facets_[function];
+  const bool same_facets = before ? facets == *before : facets.empty();
+  if (same_facets && effective == effective_[function]) {
     return;  // trees and grids are good as they are
   }
-  facets_[function] = std::move(facets);
-  facet_counts_[function] = facets_[function].size();
+  const std::size_t count = facets.size();
+  facets_[function] = std::make_shared<const SizedFacets>(std::move(facets));
+  facet_counts_[function] = count;
   origins_[function] = std::move(origins);
   effective_[function] = effective;
   mark_changed(function);
@@ -288,7 +312,7 @@ void SizeField::build_trees() {
 Box SizeField::box_of(const Group& group) const {
   Box box;
   for (const Entity& entity : group.entities) {
-    box.extend(topology_.box(entity));
+    box.extend(topology_->box(entity));
   }
   return box;
 }
@@ -304,7 +328,7 @@ bool SizeField::wants_grid(const Group& group, const std::vector<Entity>& entiti
   Box box;
   for (const Entity& entity : entities.empty() ? group.entities : entities) {
     if (entity.dim == 3 && this->group(entity) != nullptr) {
-      box.extend(topology_.box(entity));
+      box.extend(topology_->box(entity));
     }
   }
   const StoredArray<SizedFacet>& facets = group.tree->facets();
@@ -320,8 +344,9 @@ bool SizeField::wants_grid(const Group& group, const std::vector<Entity>& entiti
 void SizeField::build_tree(Group& group) const {
   const StopWatch watch;
   double size_limit = no_size;
+  Action limiting;
   SizedFacets facets;
-  group.origins.clear();
+  std::vector<Origin> origins;
   for (const Action& action : group.actions) {
     if (!is_effective(action.function)) {
       continue;
@@ -332,16 +357,18 @@ void SizeField::build_tree(Group& group) const {
     limit = has_one_size ? function.start_size : limit;
     if (limit < size_limit) {
       size_limit = limit;
-      group.limit = {action.function, has_one_size};
+      limiting = {action.function, has_one_size};
     }
-    if (!action.inside_source) {
-      const SizedFacets& more = facets_[action.function];
-      group.origins.push_back({facets.size(), action.function, origins_[action.function]});
+    if (!action.inside_source && facets_[action.function]) {
+      const SizedFacets& more = *facets_[action.function];
+      origins.push_back({facets.size(), action.function, origins_[action.function]});
       facets.insert(facets.end(), more.begin(), more.end());
     }
   }
   const int threads = threads_for(facets.size());
   group.tree = std::make_shared<FacetTree>(std::move(facets), threads);
+  group.origins = std::move(origins);  // from here on nothing throws
+  group.limit = limiting;
   group.size_limit = size_limit;
   group.grid = nullptr;
   group.changed = false;
@@ -485,7 +512,7 @@ void SizeField::exact_sizes(const Entity& entity, const Vec3* points, std::size_
 // ==== Parts
 
 SizeField::Parts SizeField::parts() const {
-  Parts parts = {options_.tolerance, topology_, functions_, effective_, facet_counts_, {}};
+  Parts parts = {options_.tolerance, *topology_, functions_, effective_, facet_counts_, {}};
   for (const Group& group : groups_) {
     if (group.changed || !group.tree) {
       throw Error("The size field has changed since it was built: build it before saving it.");
@@ -497,7 +524,7 @@ SizeField::Parts SizeField::parts() const {
 }
 
 SizeField::SizeField(Parts parts)
-    : topology_(std::move(parts.topology)),
+    : topology_(std::make_shared<Topology>(std::move(parts.topology))),
       functions_(std::move(parts.functions)),
       facets_(functions_.size()),
       facet_counts_(std::move(parts.facet_counts)),

@@ -50,6 +50,11 @@ struct WalledRegion {
 /// The size field of a model: all size functions, the groups of entities on which they act, a tree
 /// and a background grid for each group (paper, section 4.3; DESIGN.md, section 2).
 ///
+/// Copies are cheap: they share what is large.
+///
+/// A member function that throws changes nothing, but for `build`, `build_trees` and `build_grids`:
+/// groups that they did not come to answer as before.
+///
 /// Thread safety: `size`, `exact_size` and the other const functions may be called from any thread
 /// while no other member function runs.
 class SizeField {
@@ -79,7 +84,7 @@ class SizeField {
   std::size_t find(const std::string& name) const;
 
   const std::vector<SizeFunction>& functions() const { return functions_; }
-  const Topology& topology() const { return topology_; }
+  const Topology& topology() const { return *topology_; }
   FieldOptions& options() { return options_; }
   const FieldOptions& options() const { return options_; }
 
@@ -245,6 +250,9 @@ class SizeField {
     std::shared_ptr<const BackgroundGrid> grid;
   };
 
+  /// Runs the body; if it throws, all is as it was.
+  template <typename Body>
+  void all_or_nothing(Body body);
   void regroup();
   void check_name(const std::string& name, std::size_t but_for) const;
   void mark_changed(std::size_t function);
@@ -262,11 +270,11 @@ class SizeField {
   const Group* group(const Entity& entity) const;
   Box reach_of(const Group& group) const;
 
-  Topology topology_;
+  std::shared_ptr<const Topology> topology_;
   FieldOptions options_;
   std::vector<SizeFunction> functions_;
   std::size_t numbers_given_ = 0;
-  std::vector<SizedFacets> facets_;
+  std::vector<std::shared_ptr<const SizedFacets>> facets_;  ///< null for none
   std::vector<std::size_t> facet_counts_;
   std::vector<FacetOrigins> origins_;  ///< of the facets of each function
   std::vector<bool> effective_;

@@ -106,8 +106,8 @@ SizeField::Answering SizeField::answering_together() const {
     result.tree = std::make_shared<FacetTree>(std::move(facets), threads);
   }
   const Box of_group = result.box;
-  for (const Entity& entity : topology_.entities()) {
-    result.box.extend(topology_.box(entity));
+  for (const Entity& entity : topology_->entities()) {
+    result.box.extend(topology_->box(entity));
   }
   if (!of_group.contains(result.box)) {
     result.grid = nullptr;
