@@ -8,6 +8,7 @@
 #include "gmsh_state.h"
 #include "restore.h"
 #include "temporary_directory.h"
+#include "text_stream.h"
 
 namespace meshgrow {
 
@@ -41,7 +42,7 @@ std::string unrolled_geo() {
     gmsh::write(file);
   }
   std::ifstream stream(file);
-  std::ostringstream text;
+  TextStream text;
   text << stream.rdbuf();
   return text.str();
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 
 #include "error.h"
 #include "interval_search.h"
+#include "text_stream.h"
 
 namespace meshgrow {
 
@@ -168,7 +168,7 @@ class Matcher {
   }
 
   std::string describe(const std::vector<Entity>& side) const {
-    std::ostringstream text;
+    TextStream text;
     const char* separator = "";
     for (const Entity& curve : side) {
       const CurveIntervals& intervals = wanted_.at(curve);

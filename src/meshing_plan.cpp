@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <sstream>
 
 #include "error.h"
+#include "text_stream.h"
 #include "volume_nesting.h"
 
 namespace meshgrow {
@@ -273,7 +273,7 @@ class Planner {
         }
       }
     }
-    std::ostringstream text;
+    TextStream text;
     text << "The size functions wait for each other: " << entity_name(start);
     const char* separator = " ";
     std::string via;
@@ -339,7 +339,7 @@ std::string plan_text(const std::vector<MeshingPass>& plan,
   if (plan.empty()) {
     return "Nothing to mesh: everything has a mesh already.\n";
   }
-  std::ostringstream text;
+  TextStream text;
   int number = 0;
   for (const MeshingPass& pass : plan) {
     text << "Pass " << ++number << ": dimension " << pass.dim << ", "

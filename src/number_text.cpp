@@ -5,8 +5,9 @@
 #include <cmath>
 #include <iomanip>
 #include <locale>
-#include <sstream>
 #include <system_error>
+
+#include "text_stream.h"
 
 namespace meshgrow {
 
@@ -22,14 +23,14 @@ std::string rounded(double value, int decimals) {
   if (std::isnan(value)) {
     return "-";
   }
-  std::ostringstream text;
+  TextStream text;
   text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(decimals) << value;
   return text.str();
 }
 
 std::string shortest(double value, int digits) {
-  std::ostringstream text;
+  TextStream text;
   text.imbue(std::locale::classic());
   text << std::setprecision(digits) << value;
   return text.str();

@@ -1,7 +1,8 @@
 #include "text_table.h"
 
 #include <algorithm>
-#include <sstream>
+
+#include "text_stream.h"
 
 namespace meshgrow {
 
@@ -25,7 +26,7 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows,
       widths[i] = std::max(widths[i], displayed_width(row[i]));
     }
   }
-  std::ostringstream text;
+  TextStream text;
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "c_results.h"
 #include "entity.h"
 #include "number_text.h"
+#include "text_stream.h"
 #include "usage_error.h"
 
 namespace meshgrow::cli {
@@ -35,7 +36,7 @@ bool holds(double value, const std::string& comparison, double bound) {
 }
 
 std::string place_text(const nlohmann::json& place) {
-  std::ostringstream text;
+  TextStream text;
   const nlohmann::json& elements = place.at("elements");
   text << (place.at("value").is_null() ? "-" : shortest(place.at("value").get<double>(), 4))
        << ": element" << (elements.size() > 1 ? "s " : " ");
