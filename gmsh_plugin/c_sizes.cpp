@@ -33,17 +33,17 @@ using SizesOf = void (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec
 int sizes_at(meshgrow_field* field, SizesOf sizes_of, int dim, int tag, const double* points,
              size_t points_n, double* sizes) {
   return guarded(1, [&] {
-    deref(field).refresh_if_needed();
-    const meshgrow::SizeField& size_field = deref(field).field();
-    if (!size_field.topology().contains({dim, tag})) {
-      throw Error(meshgrow::entity_name({dim, tag}) +
-                  " is not in the model: check its dimension and tag.");
-    }
-    // A vector is its three coordinates and nothing else, so the caller's array is read in place.
-    static_assert(sizeof(meshgrow::Vec3) == 3 * sizeof(double) &&
-                  alignof(meshgrow::Vec3) == alignof(double));
-    (size_field.*sizes_of)({dim, tag}, reinterpret_cast<const meshgrow::Vec3*>(points), points_n,
-                           sizes);
+    deref(field).ask([&](const meshgrow::SizeField& size_field) {
+      if (!size_field.topology().contains({dim, tag})) {
+        throw Error(meshgrow::entity_name({dim, tag}) +
+                    " is not in the model: check its dimension and tag.");
+      }
+      // A vector is its three coordinates and nothing else, so the caller's array is read in place.
+      static_assert(sizeof(meshgrow::Vec3) == 3 * sizeof(double) &&
+                    alignof(meshgrow::Vec3) == alignof(double));
+      (size_field.*sizes_of)({dim, tag}, reinterpret_cast<const meshgrow::Vec3*>(points), points_n,
+                             sizes);
+    });
     return 0;
   });
 }
@@ -132,13 +132,14 @@ int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag, const dou
 int meshgrow_field_smallest_size(meshgrow_field* field, const double* points, size_t points_n,
                                  double* sizes) {
   return guarded(1, [&] {
-    deref(field).refresh_if_needed();
     std::vector<meshgrow::Vec3> at;
     at.reserve(points_n);
     for (size_t i = 0; i < points_n; ++i) {
       at.emplace_back(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
     }
-    deref(field).field().smallest_sizes(at.data(), points_n, sizes);
+    deref(field).ask([&](const meshgrow::SizeField& size_field) {
+      size_field.smallest_sizes(at.data(), points_n, sizes);
+    });
     return 0;
   });
 }

@@ -20,8 +20,9 @@
  * meshgrow_field_generate sees to it.
  *
  * Thread safety: as Gmsh itself, one thread at a time, except meshgrow_field_size,
- * meshgrow_field_exact_size, meshgrow_field_answer and the callbacks on a field that is not being
- * changed. */
+ * meshgrow_field_exact_size, meshgrow_field_smallest_size, meshgrow_field_answer and the callbacks
+ * on a field that is not being changed. Their first calls, which read the sources, may come at once
+ * as well (one thread reads, the others wait), but for meshgrow_field_answer, which reads none. */
 
 #ifdef __cplusplus
 extern "C" {

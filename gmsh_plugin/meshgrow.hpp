@@ -311,7 +311,7 @@ class SizeField {
 
   /// Sizes asked for on an entity at points, three coordinates each; infinite where no function
   /// acts; before Gmsh applies its Mesh.MeshSizeMin, Max and Factor. Throws Error if the entity is
-  /// not in the model. Thread safety: as the operator above, after a `refresh`.
+  /// not in the model. Thread safety: as the operator above.
   std::vector<double> size(int dim, int tag, const std::vector<double>& points) const {
     std::vector<double> sizes(points.size() / 3);
     check_points(points);

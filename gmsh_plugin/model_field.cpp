@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <numeric>
+#include <shared_mutex>
+#include <system_error>
 
 #include "error.h"
 #include "field_file.h"
@@ -212,10 +215,28 @@ void ModelField::check_model() const {
   }
 }
 
-void ModelField::refresh() {
-  if (!file_.empty()) {
-    return;  // it has all that it will ever have
+void ModelField::change(const std::function<void()>& body) {
+  std::unique_lock<std::shared_mutex> lock(answers_.mutex(), std::defer_lock);
+  try {
+    if (answers_.is_asking_user()) {
+      throw std::system_error(std::make_error_code(std::errc::resource_deadlock_would_occur));
+    }
+    lock.lock();
+  } catch (const std::system_error&) {
+    throw Error(
+        "The size field is at work, and called this: let your own sizes and the listener of "
+        "progress not change it.");
   }
+  body();
+}
+
+void ModelField::refresh() {
+  if (file_.empty()) {  // else it has all that it will ever have
+    change([this] { refresh_unlocked(); });
+  }
+}
+
+void ModelField::refresh_unlocked() {
   const CurrentModel current(model_);
   forget_kept_sources();
   read_all(is_registered() || ready_for_calls_);
@@ -242,7 +263,7 @@ void ModelField::read_if_needed() {
   }
   const CurrentModel current(model_);
   if (gmsh::option("Mesh.MeshSizeFactor") != size_factor_ && !read_as_.empty()) {
-    refresh();
+    refresh_unlocked();
     return;
   }
   // Within a run of Gmsh, which has thrown meshes away, a user's own callback may ask.
@@ -267,6 +288,16 @@ void ModelField::read_if_needed() {
     report_unmeshed(function);
   }
   field_.build();
+}
+
+void ModelField::ask(const std::function<void(const SizeField&)>& question) {
+  if (answers_.is_asking_user()) {
+    question(field_);
+    return;
+  }
+  change([this] { refresh_if_needed(); });
+  const std::shared_lock<std::shared_mutex> lock(answers_.mutex());
+  question(field_);
 }
 
 void ModelField::refresh_if_needed() {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -94,6 +93,11 @@ class ModelField {
   /// for) mesh size functions without a meshed source.
   void refresh();
 
+  /// Brings the field up to date, one thread at a time, and has it asked. Within the user's own
+  /// sizes it is asked as it is, since others are being answered. May be called from any thread, at
+  /// once with `answer_call` and `refresh`, between the calls of other functions.
+  void ask(const std::function<void(const SizeField&)>& question);
+
   /// Reads the sources that were not read yet, or that were meshed anew since, and builds what is
   /// not built.
   void refresh_if_needed();
@@ -134,6 +138,10 @@ class ModelField {
   /// After a change of the definitions, of this function if it is there: a registered field acts at
   /// once.
   void apply_change(std::optional<std::size_t> function = std::nullopt);
+
+  /// Runs `body` while nobody is answered. Throws Error where this would be waiting for oneself.
+  void change(const std::function<void()>& body);
+  void refresh_unlocked();
 
   /// Throws Error if the model lacks an entity on which a saved field acts.
   void check_acted_on() const;
@@ -206,7 +214,6 @@ class ModelField {
   std::map<Entity, FacetedSource> kept_;
   bool is_keeping_ = false;
   std::atomic<bool> ready_for_calls_{false};
-  std::mutex calls_mutex_;
   std::string file_;  ///< that it was loaded from; empty for a field of the model
   bool generating_ = false;
   RunTimes run_times_;

@@ -83,20 +83,21 @@ void ModelField::make_ready_for_calls() {
 }
 
 void ModelField::try_to_make_ready_for_calls() {
-  const std::lock_guard<std::mutex> lock(calls_mutex_);
-  if (ready_for_calls_) {
-    return;
-  }
-  std::string problem;
-  try {
-    make_ready_for_calls();
-  } catch (const std::exception& error) {
-    problem = error.what();
-  }
-  ready_for_calls_ = true;
-  if (!problem.empty()) {
-    gmsh::log("The size field cannot answer: " + problem, "warning");
-  }
+  change([this] {
+    if (ready_for_calls_) {
+      return;
+    }
+    std::string problem;
+    try {
+      make_ready_for_calls();
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    ready_for_calls_ = true;
+    if (!problem.empty()) {
+      gmsh::log("The size field cannot answer: " + problem, "warning");
+    }
+  });
 }
 
 double ModelField::answer_call(int dim, int tag, double x, double y, double z,
@@ -105,7 +106,7 @@ double ModelField::answer_call(int dim, int tag, double x, double y, double z,
     if (file_.empty() && gmsh::current_model() != model_) {
       return proposed;
     }
-    if (!ready_for_calls_ && !generating_) {
+    if (!ready_for_calls_ && !generating_ && !answers_.is_asking_user()) {
       try_to_make_ready_for_calls();
     }
   } catch (...) {

@@ -76,8 +76,13 @@ class SizeAnswers {
   void set_reader(std::function<void(int dim)> reader,
                   std::function<bool(const Entity& curve)> has_mesh);
 
- private:
+  /// Whether this thread is within the user's own sizes, asked for an answer.
   bool is_asking_user() const;
+
+  /// Held while the field is asked, and exclusively while it changes, as long as there is a reader.
+  std::shared_mutex& mutex() const { return mutex_; }
+
+ private:
   /// The first one, as a warning in Gmsh's log.
   void tell_problem(const char* sentence) const noexcept;
   double calibrated(int dim, const Vec3& p, double size) const;
