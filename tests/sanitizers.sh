@@ -1,0 +1,113 @@
+#!/usr/bin/env bash
+# Runs the tests under sanitizers: AddressSanitizer and UndefinedBehaviorSanitizer over those of core
+# and plugin, ThreadSanitizer over what several threads may do at once. No function of ours is
+# exempted. Arguments: parts to run (address, python, thread), all if there are none; `python-all`
+# runs the Python tests that a usual run leaves out as well.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+without_build=1
+with_checks=1
+. tests/setup.sh
+
+parts=("$@")
+[ $# -gt 0 ] || parts=(address python thread)
+address=$build/sanitize-address
+thread=$build/sanitize-thread
+summary=()
+status=0
+
+wants() { [[ " ${parts[*]} " == *" $1 "* ]]; }
+
+# build FOLDER KIND TARGET...: with the sanitizers of that kind.
+build() {
+  local folder=$1 kind=$2
+  shift 2
+  say "Building with -DMESHGROW_SANITIZE=$kind in $folder"
+  mkdir -p "$folder"
+  ln -sfn ../venv "$folder/venv"
+  cmake -S . -B "$folder" -G Ninja -DMESHGROW_SANITIZE="$kind" -DCMAKE_BUILD_TYPE= \
+    >"$folder/configure.log" 2>&1 || fail "cmake failed: see $folder/configure.log"
+  cmake --build "$folder" -j2 --target "$@" || fail "the build with sanitizers failed."
+}
+
+# check NAME COMMAND...: runs it, and keeps its result for the summary.
+check() {
+  local name=$1 began=$SECONDS result=passed
+  shift
+  say "$name"
+  "$@" || { result=FAILED; status=1; }
+  summary+=("$result  $name ($((SECONDS - began)) s)")
+}
+
+# halves PROGRAM [ARGUMENT...]: a GoogleTest program as two processes.
+halves() {
+  local failed=0 shard
+  for shard in 0 1; do
+    GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX=$shard GTEST_BRIEF=1 "$@" &
+  done
+  wait -n || failed=1
+  wait -n || failed=1
+  return $failed
+}
+
+export UBSAN_OPTIONS=print_stacktrace=1
+# The trees of facets and all that stands on them, by each of the instruction sets that the
+# processor has; the fastest is the one without a name.
+kernels=(plain avx2)
+
+if wants address; then
+  build "$address" address core_tests plugin_tests thread_tests linked_program cpp_program_debian \
+    cpp_program_newest
+  # What libgmsh and the libraries below it do not free is theirs.
+  printf 'leak:%s\n' libgmsh libTK libfontconfig >"$address/leaks-of-others"
+  export LSAN_OPTIONS=suppressions=$address/leaks-of-others:print_suppressions=0
+  export ASAN_OPTIONS=detect_stack_use_after_return=1
+  check "address: core" halves "$address/bin/core_tests"
+  for simd in "${kernels[@]}"; do
+    check "address: core, $simd kernels" env MESHGROW_SIMD="$simd" GTEST_BRIEF=1 \
+      "$address/bin/core_tests" --gtest_filter='FacetTree*:BackgroundGrid*:SmallestSizes*'
+  done
+  for libgmsh in "$libgmsh_debian" "$libgmsh_newest"; do
+    export MESHGROW_GMSH_LIB=$libgmsh GTEST_BRIEF=1
+    check "address: plugin, ${libgmsh##*/}" "$address/bin/plugin_tests"
+    check "address: threads, ${libgmsh##*/}" "$address/bin/thread_tests"
+  done
+  unset MESHGROW_GMSH_LIB GTEST_BRIEF
+  for program in linked_program cpp_program_debian cpp_program_newest; do
+    check "address: $program" "$address/bin/$program"
+  done
+fi
+
+if wants python || wants python-all; then
+  build "$address" address meshgrow meshgrow_program
+  # Python, Gmsh and what they load are as they are: only our library and program are checked, from
+  # within, and nobody's leaks are counted. Left out are examples, pages, and what runs no code of
+  # ours that the others do not run.
+  runtime="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so)"
+  left_out='example|page|readme|sweep|workflow|final_meshes'
+  ! wants python-all || left_out='^$'
+  check "address: Python" env ASAN_OPTIONS=detect_leaks=0 LD_PRELOAD="$runtime" \
+    ctest --test-dir "$address" -j2 --output-on-failure -R '^python\.' -E "$left_out"
+fi
+
+if wants thread; then
+  # GCC's OpenMP tells ThreadSanitizer nothing; Clang's does, through Archer.
+  CXX=clang++ build "$thread" thread core_tests thread_tests
+  archer=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -n 1)
+  export OMP_TOOL_LIBRARIES=$archer GTEST_BRIEF=1
+  # Gmsh is not instrumented: what it does between locks that cannot be seen is left alone.
+  export TSAN_OPTIONS=ignore_noninstrumented_modules=1
+  check "thread: core" "$thread/bin/core_tests" --gtest_filter='*Thread*:ParallelFor.*'
+  for simd in "${kernels[@]}"; do
+    check "thread: evaluation and building, $simd kernels" env MESHGROW_SIMD="$simd" \
+      "$thread/bin/thread_tests" --gtest_filter='*Evaluation*:Building.*'
+  done
+  for libgmsh in "$libgmsh_debian" "$libgmsh_newest"; do
+    check "thread: all, ${libgmsh##*/}" env MESHGROW_GMSH_LIB="$libgmsh" \
+      "$thread/bin/thread_tests"
+  done
+fi
+
+say "Sanitizers"
+printf '%s\n' "${summary[@]}"
+exit $status
