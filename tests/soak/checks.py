@@ -1,0 +1,114 @@
+"""What is checked after each model."""
+
+import os
+import tempfile
+
+import gmsh
+import meshgrow
+import numpy as np
+
+from meshes import (CELL_FACES, FACE_SIDES, boundary, cells_of, corner_tags, count_sides, corners,
+                    element_count, has_elements, signed_volumes, snapshot)
+
+MANY = 1000  # tetrahedra from which on the sizes of a volume are judged
+
+
+def changed_options():
+    """All options of Gmsh that have not their default, as text."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "options.opt")
+        gmsh.write(path)
+        with open(path) as file:
+            return "".join(line for line in file 
+                       if "read-only" not in line and not line.startswith("View["))
+
+
+def visibility():
+    return {e: gmsh.model.getVisibility(*e) for e in gmsh.model.getEntities()}
+
+
+class Before:
+    """What must be the same after meshing."""
+
+    def __init__(self):
+        self.meshes = {e: snapshot(e) for e in gmsh.model.getEntities() if e[0] > 0
+                       and has_elements(e)}
+        self.options = changed_options()
+        self.visibility = visibility()
+
+    def differences(self):
+        found = ["%s of %s changed" % (what, entity)
+                 for entity, before in self.meshes.items()
+                 for what, a, b in zip(("node tags", "coordinates", "elements"), before,
+                                       snapshot(entity)) if a != b]
+        if changed_options() != self.options:
+            found.append("options changed: %r" % set(changed_options().splitlines()).difference(
+                self.options.splitlines()))
+        if visibility() != self.visibility:
+            found.append("visibility changed")
+        return found
+
+
+def invalid():
+    """What is wrong with the volumes' meshes, in words."""
+    found = []
+    for volume in gmsh.model.getEntities(3):
+        if not has_elements(volume):
+            found.append("%s has no mesh" % (volume,))
+            continue
+        if signed_volumes(volume).min() <= 0:
+            found.append("%s has inverted tetrahedra" % (volume,))
+        sides = count_sides(volume, CELL_FACES)
+        on_faces = {c for f in boundary([volume]) for c in cells_of(f, FACE_SIDES)}
+        if {side for side, count in sides.items() if count != 2} != on_faces:
+            found.append("%s does not end at the meshes of its faces" % (volume,))
+    tags = gmsh.model.mesh.getNodes()[0]
+    if len(set(tags)) != len(tags):
+        found.append("nodes are there twice")
+    return found
+
+
+def size_ratios(volume):
+    """Of neighbours in a volume: the ratio of sizes, and the nodes that they share."""
+    tags = corner_tags(volume, "Tetrahedron")
+    points = corners(volume, "Tetrahedron")
+    sizes = np.mean([np.linalg.norm(points[:, i] - points[:, j], axis=1)
+                     for i in range(4) for j in range(i)], axis=0)
+    faces = np.sort(np.concatenate([np.delete(tags, i, axis=1) for i in range(4)]), axis=1)
+    owners = np.tile(np.arange(len(tags)), 4)
+    order = np.lexsort(faces.T)
+    same = np.all(faces[order[1:]] == faces[order[:-1]], axis=1)
+    a, b = owners[order[:-1][same]], owners[order[1:][same]]
+    ratios = np.maximum(sizes[a], sizes[b]) / np.minimum(sizes[a], sizes[b])
+    return ratios, np.concatenate((tags[a], tags[b]), axis=1)
+
+
+def causes(volume, premeshed, field):
+    """Numbers that tell why sizes jump in a volume."""
+    ratios, nodes = size_ratios(volume)
+    bad = ratios > 1.5
+    faces = [f for f in boundary([volume]) if f in premeshed]
+    on_premeshed = np.unique([n for f in faces for n in corner_tags(f, "Triangle").ravel()])
+    result = {"bad": float(bad.mean()),
+              "bad_at_premeshed": float(np.isin(nodes[bad], on_premeshed).any(axis=1).mean()),
+              "all_at_premeshed": float(np.isin(nodes, on_premeshed).any(axis=1).mean()),
+              "on_faces": meshgrow.report(2, boundary([volume]), field)}
+    if faces:
+        result["on_premeshed"] = meshgrow.report(2, faces, field)
+    return result
+
+
+def measure_volumes(field, premeshed):
+    """Of each volume that a function acts on and that had no mesh: elements and their sizes."""
+    result = []
+    for volume in gmsh.model.getEntities(3):
+        if volume in premeshed:
+            continue
+        report = meshgrow.report(3, [volume], field)
+        if report["length_median"] is None:
+            continue  # nothing acts on it
+        entry = {"volume": volume[1], "tetrahedra": element_count(volume), "report": report}
+        if report["ratio_99"] and report["ratio_99"] > 1.5 and entry["tetrahedra"] > MANY:
+            entry["causes"] = causes(volume, premeshed, field)
+        result.append(entry)
+    return result

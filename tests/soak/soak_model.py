@@ -1,0 +1,77 @@
+"""A random model that its seed determines."""
+
+import random
+
+import gmsh
+import meshgrow
+
+import random_meshes
+from random_functions import FunctionMaker, draw_settings
+from random_shapes import make_shapes
+from meshes import has_elements
+
+
+class GmshFailure(Exception):
+    """Gmsh could not do something before the library came into play."""
+
+
+class SoakModel:
+    """Built in the current Gmsh session, with its meshes that are there beforehand."""
+
+    def __init__(self, seed):
+        # One after the other, so that a change in one does not draw all others anew.
+        draws = {part: random.Random("%d %s" % (seed, part))
+                 for part in ("shapes", "meshes", "functions", "settings")}
+        self.words = [make_shapes(draws["shapes"])]
+        self.field_options, self.gmsh_options = draw_settings(draws["settings"])
+        self.premesh = random_meshes.plan_premesh(draws["meshes"])
+        self.functions = FunctionMaker(draws["functions"], self.premesh).functions()
+        if self.premesh:
+            self.words.append("meshed before: %s %s" % self.premesh[:2])
+        self.words += self.functions
+        self.words.append("%s %s" % (self.gmsh_options, self.field_options))
+
+    def set_options(self):
+        for name, value in self.gmsh_options.items():
+            gmsh.option.setNumber(name, value)
+
+    def mesh_beforehand(self):
+        if not self.premesh:
+            return
+        try:
+            random_meshes.carry_out(self.premesh)
+        except Exception as error:
+            raise GmshFailure(str(error)) from error
+
+    def make_field(self):
+        field = meshgrow.SizeField(**self.field_options)
+        for text in self.functions:
+            field.add(text)
+        return field
+
+    def limit(self):
+        return min(float(text.split(" limit ")[1]) for text in self.functions)
+
+    def generate_by_callback(self):
+        """In Gmsh's own order, with the sizes of the field."""
+        field = self.make_field()
+        field.register()
+        try:
+            gmsh.model.mesh.generate(3)
+        finally:
+            field.unregister()
+
+    def generate_without(self):
+        """By plain Gmsh, with sizes alike: those of the meshes made beforehand, and the limit."""
+        known = {e for e in gmsh.model.getEntities() if has_elements(e)}
+        limit = self.limit()
+        size = self.premesh[2] if self.premesh else None
+
+        def size_at(dim, tag, x, y, z, *_):
+            return size(x, y, z) if (dim, tag) in known else limit
+        gmsh.model.mesh.clear()
+        gmsh.model.mesh.setSizeCallback(size_at)
+        try:
+            gmsh.model.mesh.generate(3)
+        finally:
+            gmsh.model.mesh.removeSizeCallback()

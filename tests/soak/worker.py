@@ -1,0 +1,115 @@
+"""Meshes random models in one process and tells of each: python worker.py MODE PIPE SEED...
+
+MODE is "field" (meshed by SizeField.generate), "callback" (in Gmsh's own order, by the sizes of the
+field) or "plain" (Gmsh alone, with sizes alike). To the file descriptor PIPE go lines of JSON:
+{"start": seed}, then the result. What crashes is known by its start."""
+
+import ctypes
+import json
+import os
+import sys
+import time
+import traceback
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
+
+import gmsh  # noqa: E402
+
+from checks import Before, invalid, measure_volumes  # noqa: E402
+from meshes import closure, element_count, options  # noqa: E402
+from soak_model import GmshFailure, SoakModel  # noqa: E402
+
+
+def resident_megabytes():
+    """After the allocator has given back what it does not need."""
+    ctypes.CDLL(None).malloc_trim(0)
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
+
+
+def tetrahedra():
+    return sum(element_count(v) for v in gmsh.model.getEntities(3))
+
+
+def unmeshed_volumes():
+    return [v for v in gmsh.model.getEntities(3) if not element_count(v)]
+
+
+def mesh_without(generate):
+    try:
+        generate()
+    except Exception as error:
+        return {"status": "gmsh", "message": str(error)}
+    empty = unmeshed_volumes()
+    if empty:
+        return {"status": "gmsh", "message": "%s left without a mesh" % empty}
+    return {"status": "meshed", "tetrahedra": tetrahedra()}
+
+
+def fails_on_same_faces():
+    """Whether Gmsh alone meshes the volumes without a mesh, from the meshes of their faces."""
+    empty = unmeshed_volumes()
+    try:
+        with options(Mesh_MeshOnlyVisible=1, Mesh_Renumber=0):
+            gmsh.model.setVisibility(gmsh.model.getEntities(), 0)
+            gmsh.model.setVisibility(empty, 1)
+            gmsh.model.mesh.generate(3)
+    except Exception as error:
+        return str(error)
+    return "%s left without a mesh" % unmeshed_volumes() if unmeshed_volumes() else ""
+
+
+def mesh_by_field(model):
+    before = Before()
+    result = {"status": "meshed"}
+    try:
+        field = model.make_field()
+        field.generate(3)
+    except Exception as error:
+        result = {"status": "error", "kind": type(error).__name__, "message": str(error)}
+    result["differences"] = before.differences()
+    result["premeshed"] = len(before.meshes)
+    if result["status"] == "error":
+        result["same_faces"] = fails_on_same_faces()
+    if result["status"] == "meshed":
+        result["invalid"] = invalid()
+        result["tetrahedra"] = tetrahedra()
+        result["seconds_of"] = field.statistics()["seconds"]
+        result["volumes"] = measure_volumes(field, closure(before.meshes))
+    return result
+
+
+def run(mode, seed):
+    start = time.monotonic()
+    gmsh.initialize(readConfigFiles=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    words = []
+    try:
+        model = SoakModel(seed)
+        words = model.words
+        model.set_options()
+        model.mesh_beforehand()
+        result = {"field": mesh_by_field,
+                  "callback": lambda model: mesh_without(model.generate_by_callback),
+                  "plain": lambda model: mesh_without(model.generate_without)}[mode](model)
+    except GmshFailure as failure:
+        result = {"status": "gmsh", "message": "before the library: %s" % failure}
+    except Exception:
+        result = {"status": "mistake", "message": traceback.format_exc(limit=-2)}
+    gmsh.finalize()
+    return dict(result, seed=seed, words=words, seconds=round(time.monotonic() - start, 3))
+
+
+def main():
+    mode, pipe, seeds = sys.argv[1], int(sys.argv[2]), [int(s) for s in sys.argv[3:]]
+    with os.fdopen(pipe, "w", buffering=1) as lines:
+        for seed in seeds:
+            lines.write(json.dumps({"start": seed}) + "\n")
+            result = run(mode, seed)
+            result["resident"] = resident_megabytes()
+            lines.write(json.dumps(result) + "\n")
+
+
+if __name__ == "__main__":
+    main()
