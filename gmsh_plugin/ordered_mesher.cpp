@@ -233,6 +233,9 @@ void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
     const std::vector<Entity> meshed = take_meshed(entities, name);
     if (pass.dim == 2) {
       keep_split_curves(entities);
+      // Volumes cannot be meshed from surfaces that end beside each other.
+      const std::set<Entity> below = field_.topology().closure(entities);
+      premeshed_.refuse_misfits({below.begin(), below.end()});
     }
     if (pass.dim == 2 && curves_follow) {
       keep_from_curve_passes(meshed);

@@ -18,13 +18,25 @@ void PremeshedStore::keep(const std::vector<Entity>& entities) {
   }
 }
 
-std::vector<Entity> PremeshedStore::keep_of_other_cells(const std::vector<Entity>& entities) {
-  std::vector<Entity> stored;
-  std::copy_if(entities.begin(), entities.end(), std::back_inserter(stored),
+std::vector<Entity> PremeshedStore::stored(const std::vector<Entity>& entities) const {
+  std::vector<Entity> result;
+  std::copy_if(entities.begin(), entities.end(), std::back_inserter(result),
                [this](const Entity& entity) { return contains(entity); });
-  const std::vector<Entity> others = of_other_cells(stored);
+  return result;
+}
+
+std::vector<Entity> PremeshedStore::keep_of_other_cells(const std::vector<Entity>& entities) {
+  const std::vector<Entity> others = of_other_cells(stored(entities));
   keep(others);
   return others;
+}
+
+void PremeshedStore::refuse_misfits(const std::vector<Entity>& entities) const {
+  const std::set<Entity> misfit = depending_on(of_other_cells(stored(entities)));
+  if (std::any_of(misfit.begin(), misfit.end(),
+                  [this](const Entity& entity) { return !contains(entity); })) {
+    put_back_changed();
+  }
 }
 
 void PremeshedStore::keep_only(const std::set<Entity>& entities) {

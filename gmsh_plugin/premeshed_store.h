@@ -38,6 +38,10 @@ class PremeshedStore {
   /// them.
   std::vector<Entity> keep_of_other_cells(const std::vector<Entity>& entities);
 
+  /// Does as put_back_changed() if Gmsh has given any of these entities other elements and what it
+  /// meshed on them is not stored.
+  void refuse_misfits(const std::vector<Entity>& entities) const;
+
   /// Forgets the copies of entities that are not among these.
   void keep_only(const std::set<Entity>& entities);
 
@@ -71,6 +75,7 @@ class PremeshedStore {
   std::set<Entity> depending_on(const std::vector<Entity>& entities) const;
   void put_back_periodicity(const std::map<Entity, Mesh>& laid_again) const;
   std::vector<Entity> of_other_cells(const std::vector<Entity>& differing) const;
+  std::vector<Entity> stored(const std::vector<Entity>& entities) const;
   struct Misfits {
     std::vector<Entity> changed;
     std::vector<Entity> deleted;

@@ -55,22 +55,22 @@ class SoakModel:
     def generate_by_callback(self):
         """In Gmsh's own order, with the sizes of the field."""
         field = self.make_field()
-        field.register()
-        try:
-            gmsh.model.mesh.generate(3)
-        finally:
-            field.unregister()
+        field.refresh()
+        self._generate(field)
 
     def generate_without(self):
-        """By plain Gmsh, with sizes alike: those of the meshes made beforehand, and the limit."""
-        known = {e for e in gmsh.model.getEntities() if has_elements(e)}
+        """By plain Gmsh, with sizes alike."""
         limit = self.limit()
-        size = self.premesh[2] if self.premesh else None
+        self._generate(lambda *_: limit)
 
-        def size_at(dim, tag, x, y, z, *_):
-            return size(x, y, z) if (dim, tag) in known else limit
-        gmsh.model.mesh.clear()
-        gmsh.model.mesh.setSizeCallback(size_at)
+    def _generate(self, size_at):
+        """What was meshed beforehand has its sizes of then, as Gmsh throws meshes away."""
+        known = {e for e in gmsh.model.getEntities() if has_elements(e)}
+        known_size = self.premesh[2] if self.premesh else None
+
+        def callback(dim, tag, x, y, z, *lc):
+            return known_size(x, y, z) if (dim, tag) in known else size_at(dim, tag, x, y, z, *lc)
+        gmsh.model.mesh.setSizeCallback(callback)
         try:
             gmsh.model.mesh.generate(3)
         finally:
