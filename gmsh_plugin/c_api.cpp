@@ -72,7 +72,7 @@ void set_option(meshgrow::ModelField& model_field, const std::string& name, doub
 
 const char* meshgrow_version(void) { return MESHGROW_VERSION; }
 
-const char* meshgrow_last_error(void) { return last_error().c_str(); }
+const char* meshgrow_last_error(void) { return last_error(); }
 
 void meshgrow_free(char* text) { std::free(text); }
 
@@ -148,7 +148,7 @@ int meshgrow_field_create_defaults(meshgrow_field* field, const int* attach, siz
 
 int meshgrow_field_add(meshgrow_field* field, const char* text) {
   return guarded(1, [&] {
-    deref(field).add(std::string(text));
+    deref(field).add(std::string(given(text, "The text of a size function")));
     return 0;
   });
 }
@@ -170,39 +170,42 @@ char* meshgrow_field_function_text(const meshgrow_field* field, size_t index) {
 
 int meshgrow_field_rename(meshgrow_field* field, const char* name, const char* new_name) {
   return guarded(1, [&] {
-    deref(field).rename(name, new_name);
+    deref(field).rename(given(name, "The name of a size function"),
+                        given(new_name, "The new name of a size function"));
     return 0;
   });
 }
 
 int meshgrow_field_modify(meshgrow_field* field, const char* name, const char* text) {
   return guarded(1, [&] {
-    deref(field).modify(name, text);
+    deref(field).modify(given(name, "The name of a size function"),
+                        given(text, "The text of a size function"));
     return 0;
   });
 }
 
 int meshgrow_field_remove(meshgrow_field* field, const char* name) {
   return guarded(1, [&] {
-    deref(field).remove(name);
+    deref(field).remove(given(name, "The name of a size function"));
     return 0;
   });
 }
 
 int meshgrow_field_save(meshgrow_field* field, const char* path) {
   return guarded(1, [&] {
-    deref(field).save(path);
+    deref(field).save(given(path, "The path of a size field"));
     return 0;
   });
 }
 
 meshgrow_field* meshgrow_field_load(const char* path) {
-  return guarded(static_cast<meshgrow_field*>(nullptr), [&] { return new meshgrow_field(path); });
+  return guarded(static_cast<meshgrow_field*>(nullptr),
+                 [&] { return new meshgrow_field(given(path, "The path of a size field")); });
 }
 
 int meshgrow_field_set_option(meshgrow_field* field, const char* name, double value) {
   return guarded(1, [&] {
-    set_option(deref(field), name, value);
+    set_option(deref(field), given(name, "The name of an option"), value);
     return 0;
   });
 }

@@ -8,6 +8,7 @@
 #include "c_guard.h"
 #include "error.h"
 #include "gmsh_api.h"
+#include "json_text.h"
 #include "mesh_report.h"
 #include "meshgrow.h"
 #include "model_reader.h"
@@ -53,13 +54,41 @@ json to_json(const meshgrow::MeshReport& report) {
   return result;
 }
 
-meshgrow::MeshReport report_from(const json& text) {
-  meshgrow::MeshReport report;
-  report.elements = text.at("elements").get<size_t>();
-  for (const ReportKey& key : report_keys) {
-    report.*key.value = number_or_unknown(text.at(key.name));
+/// Throws Error if it is none.
+json parse_report(const char* text) {
+  json report = json::parse(given(text, "A report"), nullptr, false);
+  if (report.is_discarded()) {
+    throw Error("A report is no JSON: give what meshgrow_report_json made.");
   }
   return report;
+}
+
+/// Of an entry of a table: {"name": …, "report": …}.
+meshgrow::NamedReport named_report(const json& entry) {
+  if (!entry.is_object() || !entry.contains("name") || !entry.at("name").is_string() ||
+      !entry.contains("report")) {
+    throw Error(
+        "A table is made of a list of {\"name\": \"…\", \"report\": {…}}: give each report so.");
+  }
+  meshgrow::NamedReport named{entry.at("name").get<std::string>(), {}};
+  const json& values = entry.at("report");
+  const auto value = [&](const char* name) {
+    if (!values.is_object() || !values.contains(name)) {
+      throw Error("The report \"" + named.name + "\" has no value \"" + name +
+                  "\": give one as it was made by report().");
+    }
+    return values.at(name);
+  };
+  const json elements = value("elements");
+  if (!elements.is_number_unsigned()) {
+    throw Error("The report \"" + named.name +
+                "\" has no number of elements: give one as it was made by report().");
+  }
+  named.report.elements = elements.get<size_t>();
+  for (const ReportKey& key : report_keys) {
+    named.report.*key.value = number_or_unknown(value(key.name));
+  }
+  return named;
 }
 
 /// What a report is about; checks that these entities are there.
@@ -99,7 +128,8 @@ meshgrow::SizeAsked size_asked_of(meshgrow_field* field) {
 char* meshgrow_report_json(int dim, const int* entities, size_t entities_n, meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
     const meshgrow::ReportMesh mesh = report_mesh(dim, entities, entities_n);
-    return copy_text(to_json(meshgrow::make_report(mesh, size_asked_of(field))).dump());
+    return copy_text(
+        meshgrow::json_text(to_json(meshgrow::make_report(mesh, size_asked_of(field)))));
   });
 }
 
@@ -108,6 +138,7 @@ char* meshgrow_report_worst_json(int dim, const int* entities, size_t entities_n
                                  size_t count) {
   return guarded(static_cast<char*>(nullptr), [&] {
     const meshgrow::ReportMesh mesh = report_mesh(dim, entities, entities_n);
+    given(name, "The name of a value");
     json places = json::array();
     for (const meshgrow::WorstPlace& place :
          meshgrow::worst_places(mesh, size_asked_of(field), name, largest != 0, count)) {
@@ -116,14 +147,16 @@ char* meshgrow_report_worst_json(int dim, const int* entities, size_t entities_n
                         {"entity", {place.entity.dim, place.entity.tag}},
                         {"point", {place.point.x(), place.point.y(), place.point.z()}}});
     }
-    return copy_text(places.dump());
+    return copy_text(meshgrow::json_text(places));
   });
 }
 
 int meshgrow_report_value(const char* report_json, const char* name, double* value) {
   return guarded(1, [&] {
-    const json report = json::parse(report_json);
-    if (!report.contains(name)) {
+    const json report = parse_report(report_json);
+    given(name, "The name of a value");
+    given(value, "The place for a value");
+    if (!report.is_object() || !report.contains(name)) {
       throw Error(std::string("A report has no value \"") + name +
                   "\": give \"elements\", \"ratio_99\" or another of its names.");
     }
@@ -135,8 +168,8 @@ int meshgrow_report_value(const char* report_json, const char* name, double* val
 char* meshgrow_report_table(const char* reports_json) {
   return guarded(static_cast<char*>(nullptr), [&] {
     std::vector<meshgrow::NamedReport> reports;
-    for (const json& entry : json::parse(reports_json)) {
-      reports.push_back({entry.at("name").get<std::string>(), report_from(entry.at("report"))});
+    for (const json& entry : parse_report(reports_json)) {
+      reports.push_back(named_report(entry));
     }
     return copy_text(meshgrow::report_table(reports));
   });

@@ -10,6 +10,7 @@
 #include "error.h"
 #include "field_view.h"
 #include "gmsh_state.h"
+#include "json_text.h"
 #include "meshgrow.h"
 #include "probe_json.h"
 #include "size_function_text.h"
@@ -33,6 +34,8 @@ using SizesOf = void (meshgrow::SizeField::*)(const Entity&, const meshgrow::Vec
 int sizes_at(meshgrow_field* field, SizesOf sizes_of, int dim, int tag, const double* points,
              size_t points_n, double* sizes) {
   return guarded(1, [&] {
+    given(points, points_n, "The array of points");
+    given(sizes, points_n, "The array for sizes");
     deref(field).ask([&](const meshgrow::SizeField& size_field) {
       if (!size_field.topology().contains({dim, tag})) {
         throw Error(meshgrow::entity_name({dim, tag}) +
@@ -115,7 +118,7 @@ char* meshgrow_field_plan_json(meshgrow_field* field, int dim) {
                         {"functions", pass.functions},
                         {"sources", dim_tags(pass.sources)}});
     }
-    return copy_text(passes.dump());
+    return copy_text(meshgrow::json_text(passes));
   });
 }
 
@@ -132,6 +135,8 @@ int meshgrow_field_exact_size(meshgrow_field* field, int dim, int tag, const dou
 int meshgrow_field_smallest_size(meshgrow_field* field, const double* points, size_t points_n,
                                  double* sizes) {
   return guarded(1, [&] {
+    given(points, points_n, "The array of points");
+    given(sizes, points_n, "The array for sizes");
     std::vector<meshgrow::Vec3> at;
     at.reserve(points_n);
     for (size_t i = 0; i < points_n; ++i) {
@@ -147,9 +152,10 @@ int meshgrow_field_smallest_size(meshgrow_field* field, const double* points, si
 int meshgrow_field_add_view(meshgrow_field* field, const char* name, const char* kind, int dim,
                             int tag, const double* plane, int resolution, int* view_tag) {
   return guarded(1, [&] {
+    given(view_tag, "The place for the tag of a view");
     meshgrow::ViewRequest request;
-    request.name = name;
-    request.kind = meshgrow::view_kind(kind);
+    request.name = given(name, "The name of a view");
+    request.kind = meshgrow::view_kind(given(kind, "The kind of a view"));
     request.entity = optional_entity(dim, tag);
     if (plane != nullptr) {
       request.plane = {{plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}};
@@ -165,7 +171,8 @@ int meshgrow_field_add_view(meshgrow_field* field, const char* name, const char*
 int meshgrow_field_write_view(meshgrow_field* field, const char* path, int dim, int tag,
                               size_t* cells) {
   return guarded(1, [&] {
-    const std::size_t written = meshgrow::write_view(deref(field), optional_entity(dim, tag), path);
+    const std::size_t written = meshgrow::write_view(deref(field), optional_entity(dim, tag),
+                                                     given(path, "The path of a size field"));
     if (cells != nullptr) {
       *cells = written;
     }
@@ -181,16 +188,17 @@ char* meshgrow_field_probe_json(meshgrow_field* field, int dim, int tag, const d
       throw Error(meshgrow::entity_name({dim, tag}) +
                   " is not in the model: check its dimension and tag.");
     }
+    given(point, "The point to probe");
     const meshgrow::Vec3 p(point[0], point[1], point[2]);
     if (!p.allFinite()) {
       throw Error("A point to probe has a coordinate that is not finite: give three numbers.");
     }
     const meshgrow::Probe found = size_field.probe({dim, tag}, p);
     if (deref(field).is_from_file()) {
-      return copy_text(meshgrow::probe_json(size_field, found, p, false).dump());
+      return copy_text(meshgrow::json_text(meshgrow::probe_json(size_field, found, p, false)));
     }
     const meshgrow::CurrentModel current(deref(field).model());
-    return copy_text(meshgrow::probe_json(size_field, found, p, true).dump());
+    return copy_text(meshgrow::json_text(meshgrow::probe_json(size_field, found, p, true)));
   });
 }
 
@@ -221,6 +229,6 @@ char* meshgrow_field_summary(meshgrow_field* field) {
 char* meshgrow_field_summary_json(meshgrow_field* field) {
   return guarded(static_cast<char*>(nullptr), [&] {
     deref(field).read_if_needed();
-    return copy_text(summary_json(deref(field)).dump());
+    return copy_text(meshgrow::json_text(summary_json(deref(field))));
   });
 }

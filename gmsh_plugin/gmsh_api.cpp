@@ -61,11 +61,20 @@ class GmshArrays {
   std::size_t count_ = 0;
 };
 
-std::string take_string(char* text) {
-  std::string result = text == nullptr ? "" : text;
-  library().free(text);
-  return result;
-}
+/// A text that Gmsh allocates.
+class GmshString {
+ public:
+  GmshString() = default;
+  GmshString(const GmshString&) = delete;
+  GmshString& operator=(const GmshString&) = delete;
+  ~GmshString() { library().free(text_); }
+
+  char** data() { return &text_; }
+  std::string copy() const { return text_ == nullptr ? "" : text_; }
+
+ private:
+  char* text_ = nullptr;
+};
 
 /// Texts that Gmsh allocates, and the array of them.
 class GmshStrings {
@@ -200,9 +209,9 @@ void initialize(const std::vector<std::string>& arguments) {
 void finalize() { library().call("gmshFinalize"); }
 
 std::string version_text() {
-  char* text = nullptr;
-  library().call("gmshOptionGetString", static_cast<const char*>("General.Version"), &text);
-  return take_string(text);
+  GmshString text;
+  library().call("gmshOptionGetString", static_cast<const char*>("General.Version"), text.data());
+  return text.copy();
 }
 
 std::string library_path() { return library().path(); }
@@ -251,9 +260,9 @@ void set_onelab_string(const std::string& name, const std::string& value) {
 }
 
 std::string current_model() {
-  char* name = nullptr;
-  library().call("gmshModelGetCurrent", &name);
-  return take_string(name);
+  GmshString name;
+  library().call("gmshModelGetCurrent", name.data());
+  return name.copy();
 }
 
 void set_current_model(const std::string& name) {
@@ -306,9 +315,9 @@ Box bounding_box(const Entity& entity) {
 }
 
 std::string entity_type(const Entity& entity) {
-  char* type = nullptr;
-  library().call("gmshModelGetType", entity.dim, entity.tag, &type);
-  return take_string(type);
+  GmshString type;
+  library().call("gmshModelGetType", entity.dim, entity.tag, type.data());
+  return type.copy();
 }
 
 bool is_discrete(const Entity& entity) {
@@ -334,9 +343,9 @@ std::vector<Entity> physical_groups() {
 }
 
 std::string physical_name(const Entity& group) {
-  char* name = nullptr;
-  library().call("gmshModelGetPhysicalName", group.dim, group.tag, &name);
-  return take_string(name);
+  GmshString name;
+  library().call("gmshModelGetPhysicalName", group.dim, group.tag, name.data());
+  return name.copy();
 }
 
 std::vector<Entity> entities_of_physical_group(const Entity& group) {
@@ -354,6 +363,11 @@ bool visible(const Entity& entity) {
   int value = 0;
   library().call("gmshModelGetVisibility", entity.dim, entity.tag, &value);
   return value != 0;
+}
+
+void set_visible(const Entity& entity, bool visible) {
+  std::array<int, 2> dim_tag = {entity.dim, entity.tag};
+  library().call("gmshModelSetVisibility", dim_tag.data(), dim_tag.size(), visible ? 1 : 0, 0);
 }
 
 void set_visible(const std::vector<Entity>& entities, bool visible) {
@@ -409,13 +423,13 @@ void add_elements(const Entity& entity, const std::vector<Elements>& elements) {
 }
 
 ElementType element_type(int type) {
-  char* name = nullptr;
+  GmshString name;
   int order = 0;
   ElementType result;
   GmshArray<double> local;
-  library().call("gmshModelMeshGetElementProperties", type, &name, &result.dim, &order,
+  library().call("gmshModelMeshGetElementProperties", type, name.data(), &result.dim, &order,
                  &result.node_count, local.data(), local.size(), &result.corner_count);
-  result.name = take_string(name);
+  result.name = name.copy();
   return result;
 }
 
@@ -464,6 +478,12 @@ void set_periodic_nodes(const std::vector<std::pair<Entity, PeriodicNodes>>& per
       }
     }
     file << "$EndPeriodic\n";
+    file.close();
+    if (!file) {
+      throw Error("The temporary file " + path +
+                  " could not be written, which is needed to tell Gmsh of periodic nodes: make "
+                  "room or set TMPDIR to another directory.");
+    }
   }
   merge(path);
 }
@@ -492,9 +512,9 @@ void generate(int dim) {
 void set_order(int order) { library().call("gmshModelMeshSetOrder", order); }
 
 std::string last_error() {
-  char* message = nullptr;
-  library().call("gmshLoggerGetLastError", &message);
-  return take_string(message);
+  GmshString message;
+  library().call("gmshLoggerGetLastError", message.data());
+  return message.copy();
 }
 
 void optimize(const std::string& method) {

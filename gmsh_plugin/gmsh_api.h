@@ -83,6 +83,8 @@ std::vector<Entity> entities_of_physical_group(const Entity& group);
 
 bool visible(const Entity& entity);
 void set_visible(const std::vector<Entity>& entities, bool visible);
+/// The same for one; needs no memory.
+void set_visible(const Entity& entity, bool visible);
 
 struct Nodes {
   std::vector<std::size_t> tags;

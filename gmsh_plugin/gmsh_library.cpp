@@ -44,6 +44,11 @@ GmshLibrary& GmshLibrary::instance() {
 }
 
 GmshLibrary::GmshLibrary() {
+  open();
+  free_ = reinterpret_cast<void (*)(void*)>(dlsym(handle_, "gmshFree"));
+}
+
+void GmshLibrary::open() {
   if (dlsym(RTLD_DEFAULT, "gmshModelMeshGenerate") != nullptr) {
     handle_ = RTLD_DEFAULT;
     path_ = loaded_library_path();
@@ -81,11 +86,11 @@ GmshLibrary::GmshLibrary() {
 
 void* GmshLibrary::find_symbol(const char* name) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  void*& found = symbols_[name];
-  if (found == nullptr) {
-    found = dlsym(handle_, name);
+  auto found = symbols_.find(name);
+  if (found == symbols_.end()) {
+    found = symbols_.emplace(name, dlsym(handle_, name)).first;
   }
-  return found;
+  return found->second;
 }
 
 void* GmshLibrary::symbol(const char* name) {
@@ -99,9 +104,9 @@ void* GmshLibrary::symbol(const char* name) {
 
 bool GmshLibrary::has(const char* name) { return find_symbol(name) != nullptr; }
 
-void GmshLibrary::free(void* memory) {
-  if (memory != nullptr) {
-    reinterpret_cast<void (*)(void*)>(symbol("gmshFree"))(memory);
+void GmshLibrary::free(void* memory) noexcept {
+  if (memory != nullptr && free_ != nullptr) {
+    free_(memory);
   }
 }
 

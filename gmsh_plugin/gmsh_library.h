@@ -1,9 +1,10 @@
 #ifndef MESHGROW_GMSH_LIBRARY_H
 #define MESHGROW_GMSH_LIBRARY_H
 
+#include <functional>
+#include <map>
 #include <mutex>
 #include <string>
-#include <unordered_map>
 
 #include "error.h"
 
@@ -43,22 +44,24 @@ class GmshLibrary {
     return result;
   }
 
-  /// Frees memory that Gmsh allocated.
-  void free(void* memory);
+  /// Frees memory that Gmsh allocated. Throws nothing: destructors do this.
+  void free(void* memory) noexcept;
 
   bool has(const char* name);
   const std::string& path() const { return path_; }
 
  private:
   GmshLibrary();
+  void open();
   void* symbol(const char* name);
   void* find_symbol(const char* name);
   std::string failure(const char* name);
 
   void* handle_ = nullptr;
+  void (*free_)(void*) = nullptr;
   std::string path_;
   std::mutex mutex_;
-  std::unordered_map<std::string, void*> symbols_;
+  std::map<std::string, void*, std::less<>> symbols_;  ///< looked up without memory
 };
 
 }  // namespace meshgrow

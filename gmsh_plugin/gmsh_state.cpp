@@ -23,26 +23,21 @@ CurrentModel::CurrentModel(const std::string& name) {
 }
 
 CurrentModel::~CurrentModel() {
-  restore([this] {
-    if (gmsh::current_model() != before_) {
-      gmsh::set_current_model(before_);
-    }
-  });
+  bool is_current = false;
+  restore([&] { is_current = gmsh::current_model() == before_; });
+  if (!is_current) {  // or not known for want of memory, which setting does not need
+    restore([this] { gmsh::set_current_model(before_); });
+  }
 }
 
 GmshState::~GmshState() {
   for (const auto& [name, value] : options_) {
     restore([&name = name, value = value] { gmsh::set_option(name, value); });
   }
-  restore([this] {
-    std::vector<Entity> shown;
-    std::vector<Entity> hidden;
-    for (const auto& [entity, visible] : visibility_) {
-      (visible ? shown : hidden).push_back(entity);
-    }
-    gmsh::set_visible(shown, true);
-    gmsh::set_visible(hidden, false);
-  });
+  for (const auto& [entity, visible] : visibility_) {
+    // One by one, since that needs no memory.
+    restore([&entity = entity, visible = visible] { gmsh::set_visible(entity, visible); });
+  }
 }
 
 void GmshState::set_option(const std::string& name, double value) {

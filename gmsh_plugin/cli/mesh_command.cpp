@@ -13,6 +13,7 @@
 #include "gmsh_command_line.h"
 #include "gmsh_session.h"
 #include "interruption.h"
+#include "json_text.h"
 #include "model_file.h"
 #include "onelab_functions.h"
 #include "output_file.h"
@@ -112,11 +113,11 @@ bool report(const MeshArguments& arguments, const std::vector<FailCondition>& co
       {"report",
        nlohmann::json::parse(take_text(meshgrow_report_json(part.dim, nullptr, 0, field)))}};
   std::cout << '\n'
-            << take_text(meshgrow_report_table(nlohmann::json::array({row}).dump().c_str()))
+            << take_text(meshgrow_report_table(json_text(nlohmann::json::array({row})).c_str()))
             << std::flush;
   const bool acceptable = check_report(conditions, part, row);
   if (!arguments.report.empty()) {
-    write_text(arguments.report, nlohmann::json::array({row}).dump(2) + "\n");
+    write_text(arguments.report, json_text(nlohmann::json::array({row}), 2) + "\n");
   }
   return acceptable;
 }

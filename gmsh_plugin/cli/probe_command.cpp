@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "entity_text.h"
+#include "json_text.h"
 #include "opened_field.h"
 #include "probe_json.h"
 #include "usage_error.h"
@@ -47,7 +48,7 @@ void probe(const ProbeArguments& arguments) {
     probes.push_back(probe_json(field, found, p, opened.has_model()));
   }
   if (arguments.json) {
-    std::cout << probes.dump(2) << '\n';
+    std::cout << json_text(probes, 2) << '\n';
   } else {
     for (const nlohmann::json& one : probes) {
       std::cout << probe_text(one);

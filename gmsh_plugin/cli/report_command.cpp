@@ -11,6 +11,7 @@
 #include "fail_conditions.h"
 #include "field_arguments.h"
 #include "gmsh_session.h"
+#include "json_text.h"
 #include "model_file.h"
 #include "model_reader.h"
 #include "size_function_text.h"
@@ -90,9 +91,9 @@ void report(const ReportArguments& arguments) {
     rows.push_back(report_row(file, arguments, texts, conditions, acceptable));
   }
   if (arguments.json) {
-    std::cout << rows.dump(2) << '\n';
+    std::cout << json_text(rows, 2) << '\n';
   } else {
-    std::cout << take_text(meshgrow_report_table(rows.dump().c_str()));
+    std::cout << take_text(meshgrow_report_table(json_text(rows).c_str()));
   }
   if (!acceptable) {
     throw CLI::RuntimeError(ExitCode::work_failed);
