@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cell_budget.h"
 #include "error.h"
@@ -19,6 +20,11 @@ constexpr double smallest_tolerance = 1e-4;
 constexpr double fewest_max_cells = 8.0;
 
 constexpr std::uint32_t last_step = (1u << max_grid_depth) - 1;
+
+/// No built grid has such cells, but a file may say so.
+[[noreturn]] void fail_too_deep() {
+  throw Error("Cells of a background grid are divided without end: save the field again.");
+}
 
 void check(const GridOptions& options) {
   check_tolerance(options.tolerance);
@@ -90,7 +96,9 @@ BackgroundGrid::BackgroundGrid(std::shared_ptr<const FacetTree> tree, StoredGrid
 }
 
 void BackgroundGrid::set_steps() {
-  steps_per_unit_ = stored_.cube.edge > 0.0 ? 1.0 / stored_.cube.step() : 0.0;
+  // In a cube of next to no extent all places are the same.
+  const double step = stored_.cube.step();
+  steps_per_unit_ = step > std::numeric_limits<double>::min() ? 1.0 / step : 0.0;
 }
 
 // ==== Evaluation
@@ -116,6 +124,9 @@ bool BackgroundGrid::find_in_table(const Vec3& p, Spot& spot) const {
 
 BackgroundGrid::NodeCode BackgroundGrid::child(const Spot& spot) const {
   const int shift = max_grid_depth - 1 - spot.depth;
+  if (shift < 0) {
+    fail_too_deep();
+  }
   const std::uint32_t octant = (spot.steps[0] >> shift & 1) | (spot.steps[1] >> shift & 1) << 1 |
                                (spot.steps[2] >> shift & 1) << 2;
   return stored_.blocks[index_of(spot.node)][octant];

@@ -33,8 +33,11 @@ constexpr int lattice_centre = 13;
 constexpr std::array<int, 18> between_corners = {1,  3,  4,  5,  7,  9,  10, 11, 12,
                                                  14, 15, 16, 17, 19, 21, 22, 23, 25};
 
+/// Never 0: what is infinitely large, times 0, is no number. Sizes so large are above those of all
+/// facets, in units of the tree, by far.
 float as_reciprocal(double size) {
-  return static_cast<float>(std::min(1.0 / size, static_cast<double>(FLT_MAX)));
+  return static_cast<float>(
+      std::clamp(1.0 / size, static_cast<double>(FLT_MIN), static_cast<double>(FLT_MAX)));
 }
 
 }  // namespace

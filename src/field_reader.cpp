@@ -1,6 +1,7 @@
 #include "field_reader.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "field_layout.h"
 #include "number_text.h"
 #include "size_function_text.h"
+#include "tree_shape.h"
 
 namespace meshgrow {
 
@@ -30,6 +32,12 @@ auto each_of(const T* data, IsSound is_sound) {
   };
 }
 
+bool is_slope(double slope) { return slope >= 0.0 && slope < 1.0; }
+
+std::size_t node_count_for(std::size_t blocks) {
+  return blocks == 0 ? 0 : nodes_for(static_cast<std::uint32_t>(blocks));
+}
+
 class Reader {
  public:
   Reader(const std::string& path, std::shared_ptr<const MappedFile> file, const Header& header)
@@ -46,8 +54,12 @@ class Reader {
     const std::size_t functions = directory_.count_of(25);
     for (std::size_t i = 0; i < functions; ++i) {
       const std::string name = directory_.text();
-      result.functions.push_back(parse_size_function(directory_.text(), result.topology));
-      result.functions.back().name = name;
+      const std::string line = directory_.text();
+      result.functions.push_back(parse_size_function(line, result.topology));
+      SizeFunction& function = result.functions.back();
+      // A file names entities one by one: short lines do not stand for many.
+      directory_.require(function.sources.size() + function.attachments.size() <= line.size());
+      function.name = name;
       result.effective.push_back(directory_.number<std::uint8_t>() != 0);
       result.facet_counts.push_back(directory_.count());
     }
@@ -140,6 +152,7 @@ class Reader {
     }
     result.entities = entities();
     result.size_limit = directory_.number<double>();
+    directory_.require(!result.entities.empty() && result.size_limit > 0.0);
     result.limit = action(functions);
     result.origins = origins(functions);
     where_ = path_ + ", group " + std::to_string(index + 1);
@@ -159,6 +172,7 @@ class Reader {
     result.centre = vector();
     result.unit = directory_.number<double>();
     result.largest_slope = directory_.number<double>();
+    directory_.require(result.unit > 0.0 && is_slope(result.largest_slope));
     const ArrayPlace<SizedFacet> facets = place<SizedFacet>();
     const auto order = place<std::uint32_t>();
     const auto nodes = place<simd::WideNode>();
@@ -171,12 +185,13 @@ class Reader {
     const std::size_t block_count = blocks.count;
     directory_.require(order.count == facet_count && boxes.count == node_count &&
                        slopes.count == node_count && entries.count == block_count &&
+                       facet_count <= 0xFFFFFFFFu - simd::lanes &&
                        block_count == (facet_count + simd::lanes - 1) / simd::lanes &&
-                       (node_count > 0) == (facet_count > 0) && node_count <= simd::max_nodes);
+                       node_count == node_count_for(block_count) && node_count <= simd::max_nodes);
     result.facets =
         array(facets, "facets", each_of(facets.data, [](std::size_t, const SizedFacet& facet) {
                 return facet.facet.corner_count >= 1 && facet.facet.corner_count <= 3 &&
-                       facet.start_size > 0.0 && facet.slope >= 0.0 && facet.slope < 1.0;
+                       facet.start_size > 0.0 && is_slope(facet.slope);
               }));
     result.order = array(order, "order of facets",
                          each_of(order.data, [facet_count](std::size_t, std::uint32_t original) {
@@ -184,13 +199,13 @@ class Reader {
                          }));
     result.nodes = array(
         nodes, "nodes",
-        each_of(nodes.data, [node_count, block_count](std::size_t i, const simd::WideNode& node) {
+        each_of(nodes.data, [block_count](std::size_t i, const simd::WideNode& node) {
+          const NodeChildren children =
+              children_of(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(block_count));
           for (int lane = 0; lane < simd::lanes; ++lane) {
-            const std::uint32_t child = node.child[lane] & ~simd::WideNode::is_block;
-            const bool is_block = child != node.child[lane];
-            // Children stand after their parents, so no way down is without end.
-            if (node.start_size[lane] < FacetTree::infinity &&
-                !(is_block ? child < block_count : child > i && child < node_count)) {
+            const bool is_child = lane < children.count;
+            if ((node.start_size[lane] < FacetTree::infinity) != is_child ||
+                (is_child && node.child[lane] != children.codes[static_cast<std::size_t>(lane)])) {
               return false;
             }
           }
@@ -201,8 +216,14 @@ class Reader {
     result.blocks =
         array(blocks, "blocks of facets",
               each_of(blocks.data, [facet_count](std::size_t i, const simd::FacetBlock& block) {
-                return block.first == i * simd::lanes && block.count >= 1 &&
-                       block.count <= simd::lanes && block.first + block.count <= facet_count;
+                const std::size_t first = i * simd::lanes;
+                const std::size_t count = std::min<std::size_t>(simd::lanes, facet_count - first);
+                for (std::size_t lane = 0; lane < simd::lanes; ++lane) {
+                  if ((block.start_size[lane] < FacetTree::infinity) != (lane < count)) {
+                    return false;
+                  }
+                }
+                return block.first == first && block.count == count;
               }));
     result.block_entries =
         array(entries, "entries of blocks",
@@ -217,6 +238,8 @@ class Reader {
     result.size_limit = directory_.number<double>();
     result.cube.origin = vector();
     result.cube.edge = directory_.number<double>();
+    directory_.require(result.size_limit > 0.0 && result.cube.origin.allFinite() &&
+                       result.cube.edge >= 0.0 && std::isfinite(result.cube.edge));
     result.table_depth = static_cast<int>(directory_.number<std::uint32_t>());
     result.statistics.depth = static_cast<int>(directory_.number<std::uint32_t>());
     const auto blocks = place<GridBlock>();
@@ -325,7 +348,9 @@ class Reader {
 
 Header read_header(const std::string& path, const MappedFile& file) {
   Header header = {};
-  std::memcpy(&header, file.data(), std::min(file.size(), sizeof(header)));
+  if (file.size() > 0) {
+    std::memcpy(&header, file.data(), std::min(file.size(), sizeof(header)));
+  }
   if (file.size() < field_layout::magic.size() || header.magic != field_layout::magic) {
     throw Error(path + " is no size field of meshgrow: give a .mgf file that meshgrow saved.");
   }

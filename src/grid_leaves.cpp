@@ -1,5 +1,7 @@
 #include "background_grid.h"
 
+#include "error.h"
+
 namespace meshgrow {
 
 void BackgroundGrid::for_each_leaf(const std::function<void(const GridLeaf&)>& visit) const {
@@ -8,6 +10,7 @@ void BackgroundGrid::for_each_leaf(const std::function<void(const GridLeaf&)>& v
     GridLeaf leaf;
   };
   std::vector<Open> open = {{stored_.blocks[0][0], {}}};
+  std::size_t blocks_seen = 0;
   while (!open.empty()) {
     Open next = open.back();
     open.pop_back();
@@ -18,6 +21,10 @@ void BackgroundGrid::for_each_leaf(const std::function<void(const GridLeaf&)>& v
       next.leaf.keeps_facets = kind_of(next.node) == NodeKind::exact;
       visit(next.leaf);
       continue;
+    }
+    // As no built grid is: a file may say so.
+    if (next.leaf.depth >= max_grid_depth || ++blocks_seen >= stored_.blocks.size()) {
+      throw Error("Cells of a background grid are divided without end: save the field again.");
     }
     const std::uint32_t half = 1u << (max_grid_depth - next.leaf.depth - 1);
     for (std::uint32_t i = 8; i-- > 0;) {

@@ -194,14 +194,15 @@ class Parser {
   }
 
   void parse_selections(std::vector<Entity>& entities) {
+    // What is named over and over takes no more room.
+    std::set<Entity> selected(entities.begin(), entities.end());
     do {
-      parse_selection(entities);
+      parse_selection(selected);
     } while (accept(','));
-    std::sort(entities.begin(), entities.end());
-    entities.erase(std::unique(entities.begin(), entities.end()), entities.end());
+    entities.assign(selected.begin(), selected.end());
   }
 
-  void parse_selection(std::vector<Entity>& entities) {
+  void parse_selection(std::set<Entity>& entities) {
     skip_space();
     std::size_t begin = position_;
     std::string word = parse_word();
@@ -242,10 +243,10 @@ class Parser {
     return static_cast<int>(value);
   }
 
-  void parse_item(int dim, std::vector<Entity>& entities) {
+  void parse_item(int dim, std::set<Entity>& entities) {
     const std::vector<Entity> all = topology_.entities(dim);
     if (accept(':')) {
-      entities.insert(entities.end(), all.begin(), all.end());
+      entities.insert(all.begin(), all.end());
       return;
     }
     const int first = parse_tag();
@@ -254,7 +255,7 @@ class Parser {
         throw Error("\"" + text_ + "\": " + entity_name({dim, first}) +
                     " is not in the model: check dimension and tag.");
       }
-      entities.push_back({dim, first});
+      entities.insert({dim, first});
       return;
     }
     // As in .geo, a range names whole numbers; of these, the entities that exist are taken.
@@ -262,7 +263,7 @@ class Parser {
     bool found = false;
     for (const Entity& entity : all) {
       if (entity.tag >= first && entity.tag <= last) {
-        entities.push_back(entity);
+        entities.insert(entity);
         found = true;
       }
     }
@@ -301,18 +302,18 @@ class Parser {
       name += text_[position_++];
     }
     const bool closed = !quoted || accept('"');
-    if (!closed || name.empty() || is_number_name(name)) {
+    if (!closed || name.empty() || is_number_name(name) || name.find('"') != std::string::npos) {
       position_ = begin;
-      fail("a name that is not a number");
+      fail("a name that is not a number and has no quotes");
     }
     return name;
   }
 
-  void parse_physical_item(int dim, std::vector<Entity>& entities) {
+  void parse_physical_item(int dim, std::set<Entity>& entities) {
     if (accept(':')) {
       for (const PhysicalGroup& group : topology_.physical_groups()) {
         if (group.dim == dim) {
-          entities.insert(entities.end(), group.entities.begin(), group.entities.end());
+          entities.insert(group.entities.begin(), group.entities.end());
         }
       }
       return;
@@ -321,7 +322,7 @@ class Parser {
     bool found = false;
     for (const PhysicalGroup& group : topology_.physical_groups()) {
       if (group.dim == dim && (group.name == name || std::to_string(group.tag) == name)) {
-        entities.insert(entities.end(), group.entities.begin(), group.entities.end());
+        entities.insert(group.entities.begin(), group.entities.end());
         found = true;
       }
     }

@@ -7,6 +7,7 @@
 #include "facet_block.h"
 #include "oriented_box.h"
 #include "parallel.h"
+#include "tree_shape.h"
 
 namespace meshgrow {
 
@@ -26,25 +27,6 @@ constexpr double box_margin = 2.5e-7;
 constexpr std::uint32_t blocks_per_task = 512;
 
 std::uint32_t blocks_for(std::uint32_t facets) { return (facets + lanes - 1) / lanes; }
-
-/// Blocks below each child but the last of a node with so many blocks: a power of eight.
-std::uint32_t blocks_per_child(std::uint32_t blocks) {
-  std::uint32_t capacity = 1;
-  while (static_cast<std::uint64_t>(capacity) * lanes < blocks) {
-    capacity *= lanes;
-  }
-  return capacity;
-}
-
-/// Nodes of a subtree with so many blocks, itself included.
-std::uint32_t nodes_for(std::uint32_t blocks) {
-  const std::uint32_t capacity = blocks_per_child(blocks);
-  if (capacity == 1) {
-    return 1;
-  }
-  const std::uint32_t rest = blocks % capacity;
-  return 1 + blocks / capacity * nodes_for(capacity) + (rest > 1 ? nodes_for(rest) : 0);
-}
 
 float rounded_down(double x) {
   const float rounded = static_cast<float>(x);

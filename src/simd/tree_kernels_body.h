@@ -158,7 +158,8 @@ inline int least_lane(Float8 values, unsigned mask) {
   Float8 least = _mm256_min_ps(values, _mm256_permute2f128_ps(values, values, 1));
   least = _mm256_min_ps(least, _mm256_permute_ps(least, 0x4E));
   least = _mm256_min_ps(least, _mm256_permute_ps(least, 0xB1));
-  return __builtin_ctz(bits(values <= least) & mask);
+  const unsigned found = bits(values <= least) & mask;
+  return __builtin_ctz(found != 0 ? found : mask);  // none is, if all are beyond float's numbers
 #else
   int least = __builtin_ctz(mask);
   for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
