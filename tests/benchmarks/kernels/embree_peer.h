@@ -28,7 +28,7 @@ class EmbreePeer {
   };
   using Corners = std::array<Float3, 3>;
 
-  static bool shrink_query(RTCPointQueryFunctionArguments* query);
+  static bool shrink_query(RTCPointQueryFunctionArguments* arguments);
   static Float3 closest_point(const Corners& triangle, const Float3& p);
 
   std::vector<Corners> triangles_;
