@@ -16,9 +16,9 @@ std::array<char, 4096> path_to_remove{};
 std::atomic<bool> has_path{false};
 std::atomic<bool> mesh_is_written{false};
 
-void write_text(const char* text) {
+void tell(const char* text) {
   // There is no one to tell if standard error is gone.
-  if (write(STDERR_FILENO, text, std::strlen(text)) < 0) {
+  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) {
     return;
   }
 }
@@ -27,9 +27,9 @@ void end_at_once(int signal) {
   if (has_path) {
     unlink(path_to_remove.data());
   }
-  write_text(isatty(STDERR_FILENO) != 0 ? "\nmeshgrow: " : "meshgrow: ");
-  write_text(mesh_is_written ? "Interrupted after the mesh was written.\n"
-                             : "Interrupted: no mesh was written.\n");
+  tell(isatty(STDERR_FILENO) != 0 ? "\nmeshgrow: " : "meshgrow: ");
+  tell(mesh_is_written ? "Interrupted after the mesh was written.\n"
+                       : "Interrupted: no mesh was written.\n");
   _exit(128 + signal);
 }
 

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import sys
 
 import gmsh
 import pytest
@@ -160,6 +159,17 @@ def test_unreadable_model(tmp_path, content, words):
     assert not (tmp_path / "out.msh").exists()
 
 
+def test_a_directory_is_no_model(tmp_path):
+    assert_refused(run("mesh", tmp_path, "-o", tmp_path / "out.msh"), str(tmp_path), "directory")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_place_for_temporary_files(box, tmp_path):
+    assert_refused(run("mesh", box, "-2", "-o", tmp_path / "out.msh", "--size-function", FIXED,
+                       TMPDIR=str(tmp_path / "missing")), "TMPDIR")
+    assert not (tmp_path / "out.msh").exists()
+
+
 def test_unreadable_file_of_size_functions(box, tmp_path):
     assert_refused(run("mesh", box, "-o", tmp_path / "out.msh", "--size-functions",
                        tmp_path / "missing.txt"), "missing.txt")
@@ -238,10 +248,6 @@ def test_unknown_option_is_named(box):
     result = run("mesh", box, "--nonsense")
     assert result.returncode != 0
     assert "--nonsense" in result.stderr + result.stdout
-
-
-if __name__ == "__main__":
-    sys.exit(pytest.main([__file__]))
 
 
 def test_plan_prints_the_passes_and_meshes_nothing(box, tmp_path):
