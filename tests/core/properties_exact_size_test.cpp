@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -53,6 +54,53 @@ TEST(ExactSizeProperties, AreTheMinimumOverAllFacetsToTheBit) {
       const double expected = least_size(model, points[i]);
       ASSERT_EQ(tree_size(tree, model, points[i]), expected) << text_of(points[i]);
       ASSERT_EQ(sizes[i], expected) << "of many, " << text_of(points[i]);
+    }
+  });
+}
+
+/// Facets that all touch one sphere and have one start size, to a millionth or to the last digits:
+/// from near its centre float cannot tell which is the smallest. Others lie around, far away.
+RandomModel facets_around(Random& random, const Vec3& centre, double radius) {
+  RandomModel model;
+  const double difference = test::log_uniform(random, 1e-16, 1e-6);
+  const auto nearly = [&](double x) { return x * (1.0 + test::uniform(random, 0.0, difference)); };
+  const double start_size = radius * test::log_uniform(random, 1e-3, 1.0);
+  const double slope = test::uniform(random, 0.05, 0.9);
+  for (std::size_t i = 1 + test::random_index(random, 40); i > 0; --i) {
+    const Vec3 normal = test::random_direction(random);
+    const Vec3 foot = centre + nearly(radius) * normal;
+    const Vec3 along = normal.cross(test::random_direction(random)).normalized();
+    const Vec3 across = normal.cross(along);
+    const double size = radius * test::log_uniform(random, 1e-3, 10.0);
+    const std::array<Facet, 3> facets = {
+        Facet::point(foot), Facet::segment(foot - size * along, foot + 0.3 * size * along),
+        Facet::triangle(foot - size * along, foot + size * (along - across),
+                        foot + size * (along + across))};
+    // So many that a block or a node has them alone, and its box is no larger than the facet.
+    const std::size_t copies = test::one_of(random, std::array<std::size_t, 3>{1, 8, 64});
+    model.facets.insert(model.facets.end(), copies,
+                        {test::one_of(random, facets), nearly(start_size), slope});
+  }
+  const double farthest = test::log_uniform(random, 1.0, 1e3);
+  for (std::size_t i = test::random_index(random, 20); i > 0; --i) {
+    const Vec3 p = centre + farthest * test::random_direction(random);
+    model.facets.push_back({Facet::point(p), start_size, slope});
+  }
+  std::shuffle(model.facets.begin(), model.facets.end(), random);
+  return model;
+}
+
+TEST(ExactSizeProperties, AreTheMinimumOfManyFacetsThatAreAllButEqual) {
+  test::for_random_rounds(300, [](Random& random) {
+    const Vec3 centre = test::random_in_box(random, test::cube(1.0));
+    const double radius = test::log_uniform(random, 1e-4, 1.0);
+    RandomModel model = facets_around(random, centre, radius);
+    model.size_limit = 1e22;
+    const FacetTree tree(model.facets);
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 p =
+          centre + test::random_in_ball(random, radius * test::log_uniform(random, 1e-15, 1e-4));
+      ASSERT_EQ(tree_size(tree, model, p), least_size(model, p)) << text_of(p);
     }
   });
 }
