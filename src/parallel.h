@@ -3,6 +3,7 @@
 
 #include <omp.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <exception>
@@ -24,21 +25,19 @@ inline int default_threads() {
 template <typename Body, typename Finished>
 void parallel_for(std::size_t count, int threads, Body body, Finished finished) {
   std::exception_ptr failure;
-  std::size_t done = 0;
+  // Relaxed: bodies need not see what others did, and no order among them shall hide from a checker
+  // of races that they have none.
+  std::atomic<bool> failed{false};
+  std::atomic<std::size_t> done{0};
   const int team = threads > 0 ? threads : default_threads();
 #pragma omp parallel for schedule(dynamic, 1) num_threads(team)
   for (std::size_t i = 0; i < count; ++i) {
-    bool failed = false;
-#pragma omp critical(meshgrow_parallel_for)
-    failed = failure != nullptr;
-    if (failed) {
+    if (failed.load(std::memory_order_relaxed)) {
       continue;
     }
     try {
       body(i);
-      std::size_t so_far = 0;
-#pragma omp atomic capture
-      so_far = ++done;
+      const std::size_t so_far = done.fetch_add(1, std::memory_order_relaxed) + 1;
       if (omp_get_thread_num() == 0) {
         finished(so_far);
       }
@@ -47,6 +46,7 @@ void parallel_for(std::size_t count, int threads, Body body, Finished finished) 
       if (!failure) {
         failure = std::current_exception();
       }
+      failed.store(true, std::memory_order_relaxed);
     }
   }
   if (failure) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
@@ -17,27 +18,34 @@
 namespace meshgrow {
 namespace {
 
-SizedFacets some_facets(unsigned seed, std::size_t count) {
-  test::Random random(seed);
-  test::RandomFacets wanted;
-  wanted.count = count;
-  wanted.longest = 0.1;
-  wanted.smallest_size = 1e-2;
-  wanted.largest_size = 0.1;
-  return test::random_facets(random, wanted);
+/// A sphere of about so many triangles, each with its longest side for a size.
+SizedFacets sphere(std::size_t count) {
+  SizedFacets facets;
+  for (const auto& [a, b, c] : test::graded_sphere(count, 20.0)) {
+    const double size = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+    facets.push_back({Facet::triangle(a, b, c), size, 1.0 / 6.0});
+  }
+  return facets;
 }
 
-BackgroundGrid grid_of(unsigned seed, std::size_t facets, int threads,
-                       std::vector<double>* progress = nullptr) {
+/// Of the sizes around and in a sphere, where they are asked for in a larger one.
+BackgroundGrid grid_of(std::size_t facets, int threads, std::vector<double>* progress = nullptr) {
   GridOptions options;
-  options.tolerance = 0.1;
+  options.tolerance = 0.02;
   options.threads = threads;
-  options.region = std::make_shared<AttachedRegion>(test::graded_sphere(300, 2.0), threads);
+  options.facets_per_exact_leaf = 16;
+  std::vector<std::array<Vec3, 3>> around = test::graded_sphere(300, 2.0);
+  for (auto& triangle : around) {
+    for (Vec3& corner : triangle) {
+      corner *= 1.5;
+    }
+  }
+  options.region = std::make_shared<AttachedRegion>(around, threads);
   if (progress != nullptr) {
     options.progress = [progress](double done) { progress->push_back(done); };
   }
-  return BackgroundGrid(std::make_shared<FacetTree>(some_facets(seed, facets), threads), 1.0,
-                        test::cube(1.0), options);
+  return BackgroundGrid(std::make_shared<FacetTree>(sphere(facets), threads), 1.0, test::cube(1.5),
+                        options);
 }
 
 std::vector<double> sizes_of(const BackgroundGrid& grid) {
@@ -51,7 +59,7 @@ std::vector<double> sizes_of(const BackgroundGrid& grid) {
 
 TEST(Building, ByFourThreadsGivesTheTreeOfOne) {
   // So many that each thread has several parts of it to lay out.
-  const SizedFacets facets = some_facets(1, 20000);
+  const SizedFacets facets = sphere(20000);
   const FacetTree tree(facets, test::thread_count);
   const FacetTree expected(facets, 1);
   ASSERT_EQ(tree.facets().size(), expected.facets().size());
@@ -61,22 +69,22 @@ TEST(Building, ByFourThreadsGivesTheTreeOfOne) {
 }
 
 TEST(Building, ByFourThreadsGivesTheGridOfOne) {
-  constexpr std::size_t facets = 600;
+  constexpr std::size_t facets = 3000;
   std::vector<double> progress;
-  const BackgroundGrid grid = grid_of(1, facets, test::thread_count, &progress);
-  EXPECT_EQ(sizes_of(grid), sizes_of(grid_of(1, facets, 1)));
+  const BackgroundGrid grid = grid_of(facets, test::thread_count, &progress);
+  EXPECT_EQ(sizes_of(grid), sizes_of(grid_of(facets, 1)));
   EXPECT_EQ(progress.back(), 1.0);
+  EXPECT_GT(grid.statistics().blocks, 1000U) << "hardly anything is left to share out";
 }
 
 TEST(Building, OfFourFieldsAtOnceByTwoThreadsEach) {
-  constexpr std::size_t facets = 200;
   std::array<std::vector<double>, test::thread_count> sizes;
   test::at_once([&sizes](int thread) {
     sizes[static_cast<std::size_t>(thread)] =
-        sizes_of(grid_of(static_cast<unsigned>(thread), facets, 2));
+        sizes_of(grid_of(1000 + 200 * static_cast<std::size_t>(thread), 2));
   });
-  for (unsigned i = 0; i < sizes.size(); ++i) {
-    EXPECT_EQ(sizes[i], sizes_of(grid_of(i, facets, 1))) << "seed " << i;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    EXPECT_EQ(sizes[i], sizes_of(grid_of(1000 + 200 * i, 1))) << "field " << i;
   }
 }
 
