@@ -7,8 +7,8 @@ import gmsh
 import meshgrow
 import numpy as np
 
-from meshes import (CELL_FACES, FACE_SIDES, boundary, cells_of, corner_tags, count_sides, corners,
-                    element_count, has_elements, signed_volumes, snapshot)
+from meshes import (boundary, corner_tags, corners, element_count, has_elements, signed_volumes,
+                    snapshot)
 
 MANY = 1000  # tetrahedra from which on the sizes of a volume are judged
 
@@ -49,6 +49,13 @@ class Before:
         return found
 
 
+def sides_of(elements):
+    """Each side of simplices (n, corners) once: nodes (sides, corners - 1), sorted, and counts."""
+    corners_of = range(elements.shape[1])
+    sides = np.sort(np.concatenate([np.delete(elements, i, axis=1) for i in corners_of]), axis=1)
+    return np.unique(sides, axis=0, return_counts=True)
+
+
 def invalid():
     """What is wrong with the volumes' meshes, in words."""
     found = []
@@ -58,9 +65,10 @@ def invalid():
             continue
         if signed_volumes(volume).min() <= 0:
             found.append("%s has inverted tetrahedra" % (volume,))
-        sides = count_sides(volume, CELL_FACES)
-        on_faces = {c for f in boundary([volume]) for c in cells_of(f, FACE_SIDES)}
-        if {side for side, count in sides.items() if count != 2} != on_faces:
+        sides, counts = sides_of(corner_tags(volume, "Tetrahedron"))
+        on_faces = np.concatenate([corner_tags(f, "Triangle") for f in boundary([volume])])
+        on_faces = np.unique(np.sort(on_faces, axis=1), axis=0)
+        if counts.max() > 2 or not np.array_equal(sides[counts == 1], on_faces):
             found.append("%s does not end at the meshes of its faces" % (volume,))
     tags = gmsh.model.mesh.getNodes()[0]
     if len(set(tags)) != len(tags):
@@ -69,7 +77,7 @@ def invalid():
 
 
 def size_ratios(volume):
-    """Of neighbours in a volume: the ratio of sizes, and the nodes that they share."""
+    """Of neighbours in a volume: the ratio of sizes, and the nodes of both (pairs, 8)."""
     tags = corner_tags(volume, "Tetrahedron")
     points = corners(volume, "Tetrahedron")
     sizes = np.mean([np.linalg.norm(points[:, i] - points[:, j], axis=1)

@@ -37,7 +37,9 @@ class FunctionMaker:
 
     def attachments(self, sources, only_volumes):
         free = [v for v in self.volumes if v not in self.premeshed] or self.volumes
-        kind = 0 if only_volumes else self.draw.random()
+        kind = self.draw.random() * (0.85 if only_volumes else 1)
+        if kind < 0.65:
+            return free
         if kind < 0.85:
             return some(self.draw, free, len(free))
         if kind < 0.95:
@@ -46,9 +48,9 @@ class FunctionMaker:
 
     def growth(self, start):
         """Growth rate, not too slow for small elements from the smallest size on, and limit."""
-        slope = max(1 - 1 / self.draw.uniform(1.05, 1.5), 0.14 - 2 * start / self.size)
+        slope = max(1 - 1 / self.draw.uniform(1.05, 1.5), 0.16 - 2 * start / self.size)
         return "growth %.4g limit %.4g" % (1 / (1 - slope),
-                                           self.size * math.exp(self.draw.uniform(-2.6, -1.4)))
+                                           self.size * math.exp(self.draw.uniform(-2.5, -1.3)))
 
     def mesh(self):
         sources = sorted(e for e in closure(self.premeshed) if e[0] == min(2, self.premeshed[0][0])
@@ -65,10 +67,10 @@ class FunctionMaker:
         dim = choose(self.draw, [(0, 2), (1, 3), (2, 4), (3, 1)])
         if dim == 3:
             sources = [self.draw.choice(self.volumes)]
-            size = (10 * gmsh.model.occ.getMass(*sources[0]) / self.draw.randint(300, 2500))**(1 / 3)
+            size = (10 * gmsh.model.occ.getMass(*sources[0]) / self.draw.randint(300, 2000))**(1 / 3)
         elif dim == 2:
             sources = some(self.draw, self.faces, 2)
-            size = face_size(sources, self.draw.randint(40, 400))
+            size = face_size(sources, self.draw.randint(40, 300))
         else:
             of_dim = [e for e in closure(self.volumes) if e[0] == dim
                       and (dim == 0 or has_length(e))]
@@ -102,7 +104,7 @@ class FunctionMaker:
 def draw_settings(draw):
     """Options of the field and of Gmsh."""
     field = {"evaluator": draw.choice(["auto", "auto", "grid", "exact"]),
-             "calibrate": draw.random() < 0.25, "tolerance": draw.choice([0.05, 0.1]), "threads": 1}
+             "calibrate": draw.random() < 0.2, "tolerance": draw.choice([0.05, 0.1]), "threads": 1}
     gmsh_options = {"Mesh.Algorithm": choose(draw, ALGORITHMS_2D),
                     "Mesh.Algorithm3D": choose(draw, ALGORITHMS_3D)}
     if draw.random() < 0.1:

@@ -55,7 +55,7 @@ def mesh_curves(draw):
 def mesh_faces(draw):
     faces = [e for e in closure(gmsh.model.getEntities(3)) if e[0] == 2]
     chosen = draw.sample(faces, min(len(faces), draw.randint(1, 4)))
-    size = face_size(chosen, draw.randint(40, 500))
+    size = face_size(chosen, draw.randint(40, 350))
     if draw.random() < 0.25:
         curve = draw.choice(curves_of(chosen) or [None])
         if curve:
@@ -84,7 +84,7 @@ def mesh_mapped_face(draw):
     if not faces:
         return mesh_faces(draw)
     face = draw.choice(faces)
-    size = face_size([face], draw.randint(40, 400))
+    size = face_size([face], draw.randint(40, 300))
     curves = boundary([face])
     for pair in (curves[::2], curves[1::2]):
         length = max(gmsh.model.occ.getMass(*c) for c in pair)

@@ -52,16 +52,16 @@ class SoakModel:
     def limit(self):
         return min(float(text.split(" limit ")[1]) for text in self.functions)
 
-    def generate_by_callback(self):
-        """In Gmsh's own order, with the sizes of the field."""
+    def generate_by_callback(self, factor):
+        """In Gmsh's own order, with the sizes of the field times a factor."""
         field = self.make_field()
         field.refresh()
-        self._generate(field)
+        self._generate(lambda *place: factor * field(*place))
 
-    def generate_without(self):
+    def generate_without(self, factor):
         """By plain Gmsh, with sizes alike."""
-        limit = self.limit()
-        self._generate(lambda *_: limit)
+        size = factor * self.limit()
+        self._generate(lambda *_: size)
 
     def _generate(self, size_at):
         """What was meshed beforehand has its sizes of then, as Gmsh throws meshes away."""
