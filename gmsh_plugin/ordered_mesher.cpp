@@ -17,6 +17,9 @@ namespace meshgrow {
 
 namespace {
 
+/// Times that the run is started again because Gmsh has split curves.
+constexpr int most_splits = 4;
+
 std::set<Entity> structured_faces(const Topology& topology, const MeshConstraints& constraints) {
   const std::set<Entity> below = topology.closure(constraints.mapped_volumes);
   std::set<Entity> result;
@@ -134,9 +137,11 @@ void OrderedMesher::generate(int dim) {
         run(passes);
         break;
       } catch (const LeftEmpty& left) {
-        start_again(left);
-        passes = plan(dim);
+        start_with_companions(left);
+      } catch (const SplitCurves& split) {
+        start_with_split_curves(split);
       }
+      passes = plan(dim);
     }
     model_field_.answers_.set_boundary(nullptr);
     premeshed_.put_back_changed();
@@ -151,7 +156,7 @@ void OrderedMesher::generate(int dim) {
   }
 }
 
-void OrderedMesher::start_again(const LeftEmpty& left) {
+void OrderedMesher::start_with_companions(const LeftEmpty& left) {
   // Gmsh makes extruded layers and other copies only in the pass that meshes what they come from,
   // and tells nobody what that is. So these go along with every pass from the first possible on.
   bool any_new = false;
@@ -163,8 +168,23 @@ void OrderedMesher::start_again(const LeftEmpty& left) {
   }
   model_field_.tell("Starting again: Gmsh meshes " + entity_names(left.entities) +
                     " only along with what it is a copy of");
-  clear_all_but(user_premeshed_, field_);
-  premeshed_.keep_only(user_premeshed_);
+  clear_meshed();
+}
+
+void OrderedMesher::start_with_split_curves(const SplitCurves& split) {
+  model_field_.tell("Starting again: Gmsh has split elements of " + entity_names(split.curves) +
+                    ", which intersect, and other surfaces stand on them");
+  ++split_count_;
+  premeshed_.keep(split.curves);
+  split_curves_.insert(split.curves.begin(), split.curves.end());
+  clear_meshed();
+}
+
+void OrderedMesher::clear_meshed() {
+  std::set<Entity> kept = user_premeshed_;
+  kept.insert(split_curves_.begin(), split_curves_.end());
+  clear_all_but(kept, field_);
+  premeshed_.keep_only(kept);
   waiting_.clear();
   lost_faces_.clear();
   unadjusted_.clear();
@@ -233,9 +253,6 @@ void OrderedMesher::run_pass(const MeshingPass& pass, bool curves_follow) {
     const std::vector<Entity> meshed = take_meshed(entities, name);
     if (pass.dim == 2) {
       keep_split_curves(entities);
-      // Volumes cannot be meshed from surfaces that end beside each other.
-      const std::set<Entity> below = field_.topology().closure(entities);
-      premeshed_.refuse_misfits({below.begin(), below.end()});
     }
     if (pass.dim == 2 && curves_follow) {
       keep_from_curve_passes(meshed);
@@ -305,7 +322,28 @@ void OrderedMesher::keep_split_curves(const std::vector<Entity>& surfaces) {
       }
     }
   }
-  mark_stale(premeshed_.keep_of_other_cells({below.begin(), below.end()}));
+  const std::vector<Entity> kept = premeshed_.keep_of_other_cells({below.begin(), below.end()});
+  mark_stale(kept);
+  check_split_curves(surfaces, kept);
+}
+
+void OrderedMesher::check_split_curves(const std::vector<Entity>& surfaces,
+                                       const std::vector<Entity>& kept) {
+  const std::set<Entity> below = field_.topology().closure(surfaces);
+  SplitCurves split{premeshed_.misfits({below.begin(), below.end()})};
+  if (split.curves.empty()) {
+    return;
+  }
+  const bool may_change =
+      std::all_of(split.curves.begin(), split.curves.end(), [this](const Entity& entity) {
+        return entity.dim == 1 && user_premeshed_.count(entity) == 0 && masters_.count(entity) == 0;
+      });
+  if (!may_change || split_count_ == most_splits) {
+    // At once: volumes cannot be meshed from surfaces that end beside each other.
+    premeshed_.put_back_changed();
+  }
+  split.curves.insert(split.curves.end(), kept.begin(), kept.end());
+  throw split;
 }
 
 void OrderedMesher::keep_from_curve_passes(const std::vector<Entity>& surfaces) {

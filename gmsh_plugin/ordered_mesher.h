@@ -42,9 +42,15 @@ class OrderedMesher {
     std::vector<Entity> entities;
     std::string pass_name;
   };
+  /// Curves meshed in this run that Gmsh has split under surfaces, while others stand on them.
+  struct SplitCurves {
+    std::vector<Entity> curves;
+  };
   std::vector<MeshingPass> plan(int dim) const;
   void run(const std::vector<MeshingPass>& plan);
-  void start_again(const LeftEmpty& left);
+  void start_with_companions(const LeftEmpty& left);
+  void start_with_split_curves(const SplitCurves& split);
+  void clear_meshed();
   void run_pass(const MeshingPass& pass, bool curves_follow);
   std::vector<Entity> without_copies(const std::vector<Entity>& entities);
   std::vector<Entity> take_meshed(const std::vector<Entity>& entities,
@@ -58,6 +64,7 @@ class OrderedMesher {
   void clear_unadjusted_curves() const;
   void keep_from_curve_passes(const std::vector<Entity>& surfaces);
   void keep_split_curves(const std::vector<Entity>& surfaces);
+  void check_split_curves(const std::vector<Entity>& surfaces, const std::vector<Entity>& kept);
   void mesh_lost_faces();
   void read_new_sources();
   void mark_stale(const std::vector<Entity>& meshed);
@@ -78,10 +85,12 @@ class OrderedMesher {
   std::set<Entity> user_premeshed_;   ///< what had a mesh at the beginning
   std::map<Entity, Entity> masters_;  ///< of periodic entities
   std::set<Entity> companions_;       ///< found to be meshed by Gmsh only along with others
+  std::set<Entity> split_curves_;     ///< by Gmsh; the run was started again with them so
   std::set<Entity> waiting_;          ///< companions that were due and have no mesh yet
   std::vector<Entity> lost_faces_;    ///< structured ones that curve passes took the mesh from
   std::vector<Entity> unadjusted_;    ///< curves of the present stage
   std::set<std::size_t> stale_;       ///< functions with a source meshed since they were read
+  int split_count_ = 0;
   int pass_count_ = 0;
   std::size_t planned_count_ = 0;
 };

@@ -31,12 +31,14 @@ std::vector<Entity> PremeshedStore::keep_of_other_cells(const std::vector<Entity
   return others;
 }
 
-void PremeshedStore::refuse_misfits(const std::vector<Entity>& entities) const {
-  const std::set<Entity> misfit = depending_on(of_other_cells(stored(entities)));
-  if (std::any_of(misfit.begin(), misfit.end(),
-                  [this](const Entity& entity) { return !contains(entity); })) {
-    put_back_changed();
+std::vector<Entity> PremeshedStore::misfits(const std::vector<Entity>& entities) const {
+  std::vector<Entity> others = of_other_cells(stored(entities));
+  const std::set<Entity> on_them = depending_on(others);
+  if (std::all_of(on_them.begin(), on_them.end(),
+                  [this](const Entity& entity) { return contains(entity); })) {
+    others.clear();
   }
+  return others;
 }
 
 void PremeshedStore::keep_only(const std::set<Entity>& entities) {

@@ -38,9 +38,9 @@ class PremeshedStore {
   /// them.
   std::vector<Entity> keep_of_other_cells(const std::vector<Entity>& entities);
 
-  /// Does as put_back_changed() if Gmsh has given any of these entities other elements and what it
-  /// meshed on them is not stored.
-  void refuse_misfits(const std::vector<Entity>& entities) const;
+  /// Those of these entities that Gmsh has given other elements, if it has meshed something on them
+  /// that is not stored: put_back_changed() would delete that and throw.
+  std::vector<Entity> misfits(const std::vector<Entity>& entities) const;
 
   /// Forgets the copies of entities that are not among these.
   void keep_only(const std::set<Entity>& entities);

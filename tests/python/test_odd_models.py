@@ -28,6 +28,42 @@ def test_curves_that_gmsh_splits_itself_are_no_error():
     meshes.assert_conforming_surfaces(face)
 
 
+def square_in_a_disk():
+    """The corners of the square come so close to the circle that coarse elements intersect."""
+    models.start("square in a disk")
+    occ = gmsh.model.occ
+    occ.fragment([(2, occ.addDisk(0, 0, 0, 1, 1))],
+                 [(2, occ.addRectangle(-.68, -.68, 0, 1.36, 1.36))])
+    occ.synchronize()
+    square, ring = sorted(gmsh.model.getEntities(2), key=lambda f: len(boundary([f])))
+    return square, ring
+
+
+def grow_from_the_square(square, ring):
+    field = meshgrow.SizeField()
+    field.add_fixed(gmsh.model.getEntities(0)[:1], [square], 3, 1.2, 3)
+    field.add_mesh([square], [ring], 1.2, 3)
+    with meshes.options(Mesh_MeshSizeMin=1, Mesh_MeshSizeMax=3):
+        field.generate(2)
+
+
+def test_curves_that_gmsh_splits_are_no_error_where_a_source_stands_on_them():
+    """The square is meshed before the ring, under which its sides are split: it is meshed anew."""
+    square, ring = square_in_a_disk()
+    grow_from_the_square(square, ring)
+    assert sum(element_count(c) for c in boundary([square])) > 4
+    meshes.assert_conforming_surfaces(square, ring)
+
+
+def test_curves_meshed_before_that_gmsh_would_split_are_kept_and_named():
+    square, ring = square_in_a_disk()
+    premesh([square], 3)
+    before = snapshots(meshes.closure([square]))
+    with pytest.raises(meshgrow.Error, match="Gmsh gave Curve .* other elements .* smaller sizes"):
+        grow_from_the_square(square, ring)
+    assert snapshots(before) == before
+
+
 def test_a_volume_of_one_tetrahedron_keeps_it():
     models.start("tetrahedron")
     geo = gmsh.model.geo
