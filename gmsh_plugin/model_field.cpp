@@ -50,6 +50,11 @@ std::vector<std::array<Vec3, 3>> boundary_triangles(const std::vector<Entity>& v
 
 ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_) {
   model_ = gmsh::current_model();
+  for (const Entity& point : field_.topology().entities(0)) {
+    if (!gmsh::is_discrete(point)) {
+      points_[point] = gmsh::points_at(point, {}).at(0);
+    }
+  }
   field_.options().boundary = boundary_triangles;
   field_.options().progress = [this](const std::string& what, double done) {
     tell_grid(what, done);
@@ -215,6 +220,16 @@ void ModelField::check_model() const {
   }
 }
 
+void ModelField::check_places() const {
+  for (const auto& [point, place] : points_) {
+    if (gmsh::points_at(point, {}) != std::vector<Vec3>{place} && !gmsh::is_discrete(point)) {
+      throw Error(entity_name(point) +
+                  " is not where it was when this size field was made, so the model was built anew "
+                  "or moved: make a new field after changing the geometry.");
+    }
+  }
+}
+
 void ModelField::change(const std::function<void()>& body) {
   std::unique_lock<std::shared_mutex> lock(answers_.mutex(), std::defer_lock);
   try {
@@ -244,6 +259,7 @@ void ModelField::refresh_unlocked() {
 
 void ModelField::read_all(bool wait_for_meshes) {
   check_model();
+  check_places();
   std::vector<std::size_t> all(field_.functions().size());
   std::iota(all.begin(), all.end(), 0U);
   read_sources(all);
@@ -281,6 +297,7 @@ void ModelField::read_if_needed() {
   if (may_run) {
     check_model();
   }
+  check_places();
   forget_kept_sources();
   read_sources(unread);
   for (const std::size_t function : unread) {
@@ -366,6 +383,7 @@ void ModelField::generate(int dim, bool remesh) {
   }
   const CurrentModel current(model_);
   check_model();
+  check_places();
   generating_ = true;
   forget_kept_sources();
   late_.clear();

@@ -148,6 +148,8 @@ class ModelField {
 
   /// Throws Error if entities came or went since the field was made.
   void check_model() const;
+  /// Throws Error if points are elsewhere: the same tags may be those of another geometry.
+  void check_places() const;
 
   /// Gives these functions their sources as they are in the model now.
   void read_sources(const std::vector<std::size_t>& functions);
@@ -195,6 +197,7 @@ class ModelField {
   void warn(const std::string& sentence) const;
 
   std::string model_;
+  std::map<Entity, Vec3> points_;  ///< places of the model's points when the field was made
   SizeField field_;
   SizeAnswers answers_;
   bool strict_ = false;

@@ -67,6 +67,7 @@ void ModelField::make_ready_for_calls() {
     return;
   }
   check_model();
+  check_places();
   const std::vector<std::size_t> unread = unread_functions(true);
   read_sources(unread);
   expect_late_sources(true);

@@ -166,8 +166,9 @@ void OrderedMesher::start_with_companions(const LeftEmpty& left) {
   if (!any_new) {
     refuse_empty(left);
   }
-  model_field_.tell("Starting again: Gmsh meshes " + entity_names(left.entities) +
-                    " only along with what it is a copy of");
+  model_field_.tell("Starting again: Gmsh left " + entity_names(left.entities) +
+                    " without a mesh, as it does with what it meshes only along with something "
+                    "that it is extruded or copied from");
   clear_meshed();
 }
 
@@ -297,7 +298,10 @@ std::vector<Entity> OrderedMesher::take_meshed(const std::vector<Entity>& entiti
   }
   if (!left.entities.empty()) {
     left.pass_name = pass_name;
-    if (entities.front().dim == 3 || !gmsh::last_error().empty()) {
+    const bool may_be_copies = entities.front().dim < 3 && gmsh::last_error().empty() &&
+                               std::none_of(left.entities.begin(), left.entities.end(),
+                                            [](const Entity& e) { return gmsh::is_discrete(e); });
+    if (!may_be_copies) {
       refuse_empty(left);
     }
     throw left;
@@ -528,7 +532,15 @@ void OrderedMesher::refuse_empty(const LeftEmpty& left) const {
                 "the geometry before the mesh, or put a volume on the surfaces in a model without "
                 "it.");
   }
+  const auto scanned = std::find_if(
+      left.entities.begin(), left.entities.end(),
+      [](const Entity& entity) { return entity.dim < 3 && gmsh::is_discrete(entity); });
   const std::string reason = gmsh::last_error();
+  if (scanned != left.entities.end() && reason.empty()) {
+    throw Error(entity_name(*scanned) +
+                " came with a mesh and has no geometry, and Gmsh did not mesh it again: keep its "
+                "mesh, or call classifySurfaces() and createGeometry() before it is taken away.");
+  }
   throw Error("Gmsh could not mesh " + entity_names(left.entities) + " in " + left.pass_name +
               (reason.empty() ? "" : " (" + reason + ")") +
               ": repair the geometry, change sizes or algorithm, or, if it is extruded from "

@@ -126,6 +126,29 @@ def test_failing_pass_over_volumes_keeps_what_was_meshed_before():
     assert all(has_elements(f) for f in gmsh.model.getEntities(2))
 
 
+def test_a_discrete_surface_that_gmsh_does_not_mesh_again_is_no_copy_of_anything(tmp_path):
+    """Surfaces of an STL without a parametrisation: there is nothing to start again for."""
+    models.box()
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.3)
+    gmsh.model.mesh.generate(2)
+    path = str(tmp_path / "box.stl")
+    gmsh.write(path)
+    gmsh.clear()
+    gmsh.merge(path)
+    gmsh.model.mesh.classifySurfaces(np.pi / 4)
+    surfaces = gmsh.model.getEntities(2)
+    gmsh.model.mesh.clear(surfaces[:1])
+    before = snapshots(surfaces[1:])
+    lines = []
+    field = meshgrow.SizeField(progress=lines.append)
+    field.add_fixed(surfaces[1:2], surfaces, 0.3, 1.2, 1.0)
+    with pytest.raises(meshgrow.Error, match="Surface %d .*no geometry.*createGeometry"
+                       % surfaces[0][1]):
+        field.generate(2)
+    assert not any("again" in line for line in lines)
+    assert snapshots(before) == before
+
+
 # ==== Threads ====
 
 
