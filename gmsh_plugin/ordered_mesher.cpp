@@ -396,6 +396,7 @@ void OrderedMesher::remove_protection(const Entity& volume) const {
 
 void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
                          const std::string& name) {
+  model_field_.stop_if_asked();
   constexpr const char* extend = "Mesh.MeshSizeExtendFromBoundary";
   state_.set_option(extend, attached ? 0.0 : state_.user_option(extend));
   // With what Gmsh has made for compounds meanwhile.

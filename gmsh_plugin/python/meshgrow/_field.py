@@ -79,7 +79,10 @@ class SizeField:
         if handle:
             lib.meshgrow_field_destroy(handle)
 
-    def _check(self, failed: int) -> None:
+    def _call(self, function: Callable[..., int], *arguments: Any) -> None:
+        """A call that may take long: raises what Python code raised within it, Ctrl-C included."""
+        with interrupts_kept(self._raised.keep):
+            failed = function(self._handle, *arguments)
         self._raised.raise_again()
         check(failed)
 
@@ -98,18 +101,18 @@ class SizeField:
         """
         if quad_size not in ("triangles", "sides"):
             raise ValueError('quad_size must be "triangles" or "sides", not %r' % (quad_size,))
-        check(lib.meshgrow_field_add_mesh(
-            self._handle, *dim_tags(sources), *dim_tags(attach), growth_rate, _limit(size_limit),
-            int(quad_size == "sides")))
+        self._call(
+            lib.meshgrow_field_add_mesh, *dim_tags(sources), *dim_tags(attach), growth_rate,
+            _limit(size_limit), int(quad_size == "sides"))
         return self._named(name)
 
     def add_fixed(self, sources: DimTags, attach: DimTags, size: float, growth_rate: float = 1.2,
                   size_limit: Optional[float] = None, name: Optional[str] = None) -> str:
         """The size ``size`` (> 0) on the sources (points to volumes) grows into the attachments.
         Returns the name."""
-        check(lib.meshgrow_field_add_fixed(
-            self._handle, *dim_tags(sources), *dim_tags(attach), size, growth_rate,
-            _limit(size_limit)))
+        self._call(
+            lib.meshgrow_field_add_fixed, *dim_tags(sources), *dim_tags(attach), size, growth_rate,
+            _limit(size_limit))
         return self._named(name)
 
     def add_curvature(self, sources: DimTags, attach: DimTags, angle: float = 18,
@@ -122,9 +125,9 @@ class SizeField:
         model without volumes for its curves as well. Unmeshed sources are sampled, read only.
         Returns the name.
         """
-        check(lib.meshgrow_field_add_curvature(
-            self._handle, *dim_tags(sources), *dim_tags(attach), angle, growth_rate,
-            _limit(size_limit), min_size))
+        self._call(
+            lib.meshgrow_field_add_curvature, *dim_tags(sources), *dim_tags(attach), angle,
+            growth_rate, _limit(size_limit), min_size)
         return self._named(name)
 
     def add_proximity(self, sources: DimTags, attach: DimTags, cells_per_gap: float = 3,
@@ -143,9 +146,9 @@ class SizeField:
         if between not in names:
             raise ValueError('between must be "faces", "edges", "both" or None, not %r'
                              % (between,))
-        check(lib.meshgrow_field_add_proximity(
-            self._handle, *dim_tags(sources), *dim_tags(attach), cells_per_gap, growth_rate,
-            _limit(size_limit), min_size, names.index(between)))
+        self._call(
+            lib.meshgrow_field_add_proximity, *dim_tags(sources), *dim_tags(attach), cells_per_gap,
+            growth_rate, _limit(size_limit), min_size, names.index(between))
         return self._named(name)
 
     def create_defaults(self, attach: Optional[DimTags] = None, growth_rate: float = 1.2,
@@ -155,14 +158,15 @@ class SizeField:
 
         Without ``attach``, of all entities of the model's highest dimension.
         """
-        check(lib.meshgrow_field_create_defaults(
-            self._handle, *dim_tags(attach or ()), growth_rate, _limit(size_limit), min_size))
+        self._call(
+            lib.meshgrow_field_create_defaults, *dim_tags(attach or ()), growth_rate,
+            _limit(size_limit), min_size)
 
     def add(self, text: str) -> str:
         """A size function by its line of text, the same as on the command line:
         ``"mesh source Surface{7} attach Volume{2} growth 1.2 limit 2"``. It may hold ``name inner``
         or ``name "inner wall"``. Returns the name."""
-        check(lib.meshgrow_field_add(self._handle, c_text(text)))
+        self._call(lib.meshgrow_field_add, c_text(text))
         return self._name(lib.meshgrow_field_function_count(self._handle) - 1)
 
     def _name(self, index: int) -> str:
@@ -188,11 +192,11 @@ class SizeField:
     def modify(self, name: str, text: str) -> None:
         """Puts another definition, a line of text, in the place of a function. Only what it acts on
         is built anew; a registered field acts as changed at once."""
-        self._check(lib.meshgrow_field_modify(self._handle, c_text(name), c_text(text)))
+        self._call(lib.meshgrow_field_modify, c_text(name), c_text(text))
 
     def remove(self, name: str) -> None:
         """Takes a function away."""
-        self._check(lib.meshgrow_field_remove(self._handle, c_text(name)))
+        self._call(lib.meshgrow_field_remove, c_text(name))
 
     def rename(self, name: str, new_name: str) -> None:
         """Gives a function another name."""
@@ -201,7 +205,7 @@ class SizeField:
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Saves the field, with grids unless the evaluator is exact, to a file (.mgf) that is
         complete or not there."""
-        self._check(lib.meshgrow_field_save(self._handle, c_path(path)))
+        self._call(lib.meshgrow_field_save, c_path(path))
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> SizeField:
@@ -232,9 +236,7 @@ class SizeField:
         """
         dim = operator.index(dim)
         self._raised.raise_again()  # of a callback in Gmsh's own generate()
-        with interrupts_kept(self._raised.keep):
-            failed = lib.meshgrow_field_generate(self._handle, dim, bool(remesh))
-        self._check(failed)
+        self._call(lib.meshgrow_field_generate, dim, bool(remesh))
 
     def plan(self, dim: int = 3) -> Plan:
         """The passes of ``generate(dim)``, without meshing: a list of dictionaries with ``dim``,
@@ -267,7 +269,7 @@ class SizeField:
         in a lower dimension of the same call is read then, and sizes are exact ones (slower than
         from grids) until ``refresh`` between two calls builds grids.
         """
-        self._check(lib.meshgrow_field_register(self._handle))
+        self._call(lib.meshgrow_field_register)
 
     def unregister(self) -> None:
         """Takes the size callback away again."""
@@ -275,7 +277,7 @@ class SizeField:
 
     def refresh(self) -> None:
         """Reads the sources as they are meshed now and builds the grids."""
-        self._check(lib.meshgrow_field_refresh(self._handle))
+        self._call(lib.meshgrow_field_refresh)
 
     def __call__(self, dim: int, tag: int, x: float, y: float, z: float,
                  lc: float = _NO_SIZE) -> float:
@@ -322,8 +324,7 @@ class SizeField:
         """The same for who knows no entity: the smallest size that any function asks for."""
         array = points_array(points)
         result = sizes_array(out, len(array))
-        self._check(lib.meshgrow_field_smallest_size(
-            self._handle, doubles(array), len(array), doubles(result)))
+        self._call(lib.meshgrow_field_smallest_size, doubles(array), len(array), doubles(result))
         return result
 
     def add_view(self, name: str = "sizes", kind: str = "cells", entity: Optional[DimTag] = None,
@@ -337,7 +338,7 @@ class SizeField:
         sides are equal). ``resolution`` squares along the longer side of the cut (32) are divided
         further where sizes bend.
         """
-        return add_view(self._handle, name, kind, entity, plane, resolution)
+        return add_view(self._call, name, kind, entity, plane, resolution)
 
     def write_view(self, path: str, entity: Optional[DimTag] = None) -> int:
         """Writes the field into a file that other programs read; returns how many cells it has.
@@ -347,13 +348,13 @@ class SizeField:
         (the same cells as a mesh). Of the field of ``entity``, a ``(dim, tag)``, or of the smallest
         size that any function asks for. The file is there completely, or as before.
         """
-        return write_view(self._handle, path, entity)
+        return write_view(self._call, path, entity)
 
     def _sizes(self, function: Callable[..., int], dim: int, tag: int, points: npt.ArrayLike,
                out: Optional[Doubles]) -> Doubles:
         array = points_array(points)
         result = sizes_array(out, len(array))
-        self._check(function(self._handle, dim, tag, doubles(array), len(array), doubles(result)))
+        self._call(function, dim, tag, doubles(array), len(array), doubles(result))
         return result
 
     def summary(self) -> str:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
-from ._library import DimTag, Doubles, c_path, c_text, check, doubles, lib
+from ._library import DimTag, Doubles, c_path, c_text, doubles, lib
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _EVERYWHERE = (-1, 0)
@@ -44,21 +44,19 @@ def _point_and_normal(plane: Any) -> Doubles:
     return numbers
 
 
-def add_view(handle: int, name: str, kind: str, entity: Optional[DimTag], plane: Any,
+def add_view(call: Callable[..., None], name: str, kind: str, entity: Optional[DimTag], plane: Any,
              resolution: Optional[int]) -> int:
-    """See SizeField.add_view."""
+    """See SizeField.add_view; `call` makes a call of the field's."""
     numbers = None if plane is None else _point_and_normal(plane)
     tag = ctypes.c_int()
-    check(lib.meshgrow_field_add_view(
-        handle, c_text(name), c_text(kind), *_dim_tag(entity),
-        None if numbers is None else doubles(numbers),
-        0 if resolution is None else operator.index(resolution), ctypes.byref(tag)))
+    call(lib.meshgrow_field_add_view, c_text(name), c_text(kind), *_dim_tag(entity),
+         None if numbers is None else doubles(numbers),
+         0 if resolution is None else operator.index(resolution), ctypes.byref(tag))
     return tag.value
 
 
-def write_view(handle: int, path: str, entity: Optional[DimTag]) -> int:
+def write_view(call: Callable[..., None], path: str, entity: Optional[DimTag]) -> int:
     """See SizeField.write_view."""
     cells = ctypes.c_size_t()
-    check(lib.meshgrow_field_write_view(handle, c_path(path), *_dim_tag(entity),
-                                        ctypes.byref(cells)))
+    call(lib.meshgrow_field_write_view, c_path(path), *_dim_tag(entity), ctypes.byref(cells))
     return cells.value
