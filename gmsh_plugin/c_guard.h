@@ -14,8 +14,7 @@
 /// What the functions of the C interface share.
 namespace meshgrow::c {
 
-constexpr const char* out_of_memory =
-    "Out of memory: raise the tolerance or use fewer facets.";
+constexpr const char* out_of_memory = "Out of memory: raise the tolerance or use fewer facets.";
 
 /// The sentence of the last failure in this thread.
 const char* last_error() noexcept;

@@ -262,6 +262,17 @@ int add_view(ModelField& model_field, const ViewRequest& request) {
                         : add_nodes(field, model_field.model(), request.name);
 }
 
+namespace {
+
+/// Without what would end a name in Gmsh's files.
+std::string view_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == '"'; }, '_');
+  return name;
+}
+
+}  // namespace
+
 void check_view_ending(const std::string& path) {
   const std::string ending = ending_of(path);
   if (ending != ".vtu" && ending != ".pos" && ending != ".msh") {
@@ -284,7 +295,7 @@ std::size_t write_view(ModelField& model_field, const std::optional<Entity>& ent
     model_field.refresh_if_needed();
     check_some_size(field, entity);
     const std::string ending = ending_of(path);
-    const std::string name = fs::path(path).stem().string();
+    const std::string name = view_name(fs::path(path).stem().string());
     const FieldCells cells =
         field_cells(field, entity, ending == ".vtu" ? CellUse::show : CellUse::interpolate);
     cell_count = cells.cells.size();

@@ -251,6 +251,12 @@ std::string onelab_string(const std::string& name) {
   return all.empty() ? "" : all.front();
 }
 
+bool is_onelab_number(const std::string& name) {
+  GmshArray<double> values;
+  library().call("gmshOnelabGetNumber", name.c_str(), values.data(), values.size());
+  return *values.size() > 0;
+}
+
 void remove_onelab(const std::string& name) { library().call("gmshOnelabClear", name.c_str()); }
 
 void set_onelab_string(const std::string& name, const std::string& value) {

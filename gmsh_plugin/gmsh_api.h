@@ -47,6 +47,8 @@ void set_option(const std::string& name, double value);
 std::vector<std::string> onelab_names(const std::string& expression);
 /// The value of a string parameter; empty if there is none of this name.
 std::string onelab_string(const std::string& name);
+/// Whether there is a number of this name.
+bool is_onelab_number(const std::string& name);
 void remove_onelab(const std::string& name);
 
 /// Sets a string parameter of ONELAB, which a .geo reads in place of its own value.

@@ -4,11 +4,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "error.h"
 #include "gmsh_api.h"
 #include "gmsh_state.h"
 #include "restore.h"
 #include "temporary_directory.h"
 #include "text_stream.h"
+#include "whole_file.h"
 
 namespace meshgrow {
 
@@ -40,6 +42,11 @@ std::string unrolled_geo() {
   {
     const ForeignPoint point;
     gmsh::write(file);
+  }
+  if (!has_room_behind(file)) {
+    throw Error(
+        "The constraints of Gmsh's model cannot be read, since a temporary file could not be "
+        "written: make room, or set TMPDIR to another directory.");
   }
   std::ifstream stream(file);
   TextStream text;

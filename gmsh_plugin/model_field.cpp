@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iostream>
 #include <mutex>
 #include <numeric>
 #include <shared_mutex>
@@ -14,6 +15,7 @@
 #include "model_reader.h"
 #include "ordered_mesher.h"
 #include "remesh.h"
+#include "simd/refused_kernels.h"
 #include "size_function_text.h"
 #include "stop_watch.h"
 
@@ -49,6 +51,7 @@ std::vector<std::array<Vec3, 3>> boundary_triangles(const std::vector<Entity>& v
 }  // namespace
 
 ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_) {
+  warn_of_refused_kernels();
   model_ = gmsh::current_model();
   for (const Entity& point : field_.topology().entities(0)) {
     if (!gmsh::is_discrete(point)) {
@@ -64,17 +67,33 @@ ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_)
 
 ModelField::ModelField(const std::string& file)
     : field_(load_field(file)), answers_(field_), file_(file) {
+  warn_of_refused_kernels();
   field_.options().warn = [this](const std::string& sentence) { warn(sentence); };
 }
 
-/// In Gmsh's log, or to the listener: a field from a file may be used without any Gmsh.
+/// A field from a file may be used without any Gmsh.
 void ModelField::warn(const std::string& sentence) const {
   try {
+    gmsh::require_gmsh();
     gmsh::log(sentence, "warning");
   } catch (const Error&) {
     if (listener_) {
       listener_("Warning: " + sentence);
+    } else {
+      std::cerr << "meshgrow: " << sentence << std::endl;
     }
+  }
+}
+
+/// Once for each process.
+void ModelField::warn_of_refused_kernels() const {
+  static const std::string refused = simd::refused_kernels();
+  static bool has_warned = false;
+  if (!refused.empty() && !has_warned) {
+    has_warned = true;
+    warn("MESHGROW_SIMD is \"" + refused +
+         "\", which is nothing that this processor runs, and is ignored: set it to plain, avx2 or "
+         "avx512, or unset it.");
   }
 }
 
@@ -82,6 +101,24 @@ void ModelField::check_changeable(const std::string& what) const {
   if (!file_.empty()) {
     throw Error("The size field of " + file_ + " cannot " + what +
                 ": make one of the model for that; this one can be asked, shown and registered.");
+  }
+}
+
+void ModelField::all_or_nothing(const std::function<void()>& body) {
+  SizeField field = field_;
+  auto late = late_;
+  auto read_as = read_as_;
+  const double size_factor = size_factor_;
+  const bool ready_for_calls = ready_for_calls_;
+  try {
+    body();
+  } catch (...) {
+    field_ = std::move(field);
+    late_ = std::move(late);
+    read_as_ = std::move(read_as);
+    size_factor_ = size_factor;
+    ready_for_calls_ = ready_for_calls;
+    throw;
   }
 }
 
@@ -127,8 +164,11 @@ void ModelField::tell_grid(const std::string& what, double done) {
 
 std::size_t ModelField::add(SizeFunction function) {
   check_changeable("be changed");
-  const std::size_t index = field_.add(std::move(function));
-  apply_change(index);
+  std::size_t index = 0;
+  all_or_nothing([&] {
+    index = field_.add(std::move(function));
+    apply_change(index);
+  });
   return index;
 }
 
@@ -139,9 +179,11 @@ std::size_t ModelField::add(const std::string& text) {
 void ModelField::modify(const std::string& name, const std::string& text) {
   check_changeable("be changed");
   const std::size_t index = field_.find(name);
-  field_.modify(index, parse_size_function(text, field_.topology()));
-  read_as_.erase(index);
-  apply_change(index);
+  all_or_nothing([&] {
+    field_.modify(index, parse_size_function(text, field_.topology()));
+    read_as_.erase(index);
+    apply_change(index);
+  });
 }
 
 namespace {
@@ -164,11 +206,13 @@ std::map<std::size_t, Value> without(const std::map<std::size_t, Value>& values,
 void ModelField::remove(const std::string& name) {
   check_changeable("be changed");
   const std::size_t index = field_.find(name);
-  field_.remove(index);
-  read_as_ = without(read_as_, index);
-  late_ = without(late_, index);
-  reported_.clear();
-  apply_change();
+  all_or_nothing([&] {
+    field_.remove(index);
+    read_as_ = without(read_as_, index);
+    late_ = without(late_, index);
+    reported_.clear();
+    apply_change();
+  });
 }
 
 void ModelField::rename(const std::string& name, const std::string& new_name) {
@@ -253,13 +297,13 @@ void ModelField::refresh() {
 
 void ModelField::refresh_unlocked() {
   const CurrentModel current(model_);
-  forget_kept_sources();
-  read_all(is_registered() || ready_for_calls_);
+  all_or_nothing([this] { read_all(is_registered() || ready_for_calls_); });
 }
 
 void ModelField::read_all(bool wait_for_meshes) {
   check_model();
   check_places();
+  forget_kept_sources();
   std::vector<std::size_t> all(field_.functions().size());
   std::iota(all.begin(), all.end(), 0U);
   read_sources(all);
@@ -299,12 +343,14 @@ void ModelField::read_if_needed() {
   }
   check_places();
   forget_kept_sources();
-  read_sources(unread);
-  for (const std::size_t function : unread) {
-    reported_.erase(function);
-    report_unmeshed(function);
-  }
-  field_.build();
+  all_or_nothing([&] {
+    read_sources(unread);
+    for (const std::size_t function : unread) {
+      reported_.erase(function);
+      report_unmeshed(function);
+    }
+    field_.build();
+  });
 }
 
 void ModelField::ask(const std::function<void(const SizeField&)>& question) {

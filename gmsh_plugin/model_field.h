@@ -38,7 +38,7 @@ class ModelField {
   /// Adds a function by its one-line text (size_function_text.h).
   std::size_t add(const std::string& text);
 
-  /// See SizeField. A registered field acts as changed from then on.
+  /// See SizeField. A registered field acts as changed from then on. What throws changes nothing.
   void modify(const std::string& name, const std::string& text);
   void remove(const std::string& name);
   void rename(const std::string& name, const std::string& new_name);
@@ -90,7 +90,8 @@ class ModelField {
   double answer_call(int dim, int tag, double x, double y, double z, double proposed) noexcept;
 
   /// Reads all sources as they are now and builds trees and grids. Warns of (with `strict`: throws
-  /// for) mesh size functions without a meshed source.
+  /// for) mesh size functions without a meshed source. If it throws, whatever the reason, the field
+  /// answers as before.
   void refresh();
 
   /// Brings the field up to date, one thread at a time, and has it asked. Within the user's own
@@ -134,6 +135,10 @@ class ModelField {
   friend class OrderedMesher;
 
   void check_changeable(const std::string& what) const;
+
+  /// Runs the body; if it throws, the field answers as before, and knows of its sources what it
+  /// knew.
+  void all_or_nothing(const std::function<void()>& body);
 
   /// After a change of the definitions, of this function if it is there: a registered field acts at
   /// once.
@@ -194,7 +199,9 @@ class ModelField {
 
   void tell_grid(const std::string& what, double done);
   void stop_if_asked() const;
+  /// In Gmsh's log; without Gmsh to the listener, or on standard error.
   void warn(const std::string& sentence) const;
+  void warn_of_refused_kernels() const;
 
   std::string model_;
   std::map<Entity, Vec3> points_;  ///< places of the model's points when the field was made

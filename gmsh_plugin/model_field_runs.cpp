@@ -20,14 +20,15 @@ void ModelField::register_callback() {
   const CurrentModel current(model_);
   SizeCallback::check_free_for(model_);
   if (file_.empty()) {
-    forget_kept_sources();
-    read_all(true);
-    set_reader();
+    all_or_nothing([this] { read_all(true); });
   }
   adapt_to_meshers();
+  auto callback = std::make_unique<SizeCallback>(answers_, model_);
+  if (file_.empty()) {
+    set_reader();
+  }
   ready_for_calls_ = true;
-  callback_.reset();
-  callback_ = std::make_unique<SizeCallback>(answers_, model_);
+  callback_ = std::move(callback);
 }
 
 void ModelField::check_acted_on() const {

@@ -82,9 +82,11 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
   SourceFacets facets(field_.topology(), nodes);
   MeshFingerprints fingerprints;
   for (const std::size_t index : functions) {
-    read_as_[index].clear();
+    // Until it is read to the end it counts as not read.
+    read_as_.erase(index);
+    std::map<Entity, std::uint64_t> read_as;
     for (const Entity& entity : watched(index)) {
-      read_as_[index][entity] = fingerprints.of(entity);
+      read_as[entity] = fingerprints.of(entity);
     }
     switch (field_.functions()[index].kind) {
       case Kind::mesh:
@@ -100,6 +102,7 @@ void ModelField::read_sources(const std::vector<std::size_t>& functions) {
         read_proximity(index, facets);
         break;
     }
+    read_as_[index] = std::move(read_as);
   }
 }
 

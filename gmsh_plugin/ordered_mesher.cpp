@@ -42,8 +42,23 @@ std::map<Entity, Entity> copied_by_us(const Topology& topology,
   return masters;
 }
 
+/// Adds the curves around meshed surfaces that files leave without elements, where only surfaces
+/// are physical groups. They have no geometry to be meshed by, and the surfaces bring their nodes.
+std::set<Entity> with_bare_curves(std::set<Entity> meshed, const Topology& topology) {
+  for (const Entity& surface : topology.entities(2)) {
+    for (const Entity& curve : topology.lower(surface)) {
+      if (curve.dim == 1 && meshed.count(surface) > 0 && meshed.count(curve) == 0 &&
+          gmsh::is_discrete(curve)) {
+        meshed.insert(curve);
+      }
+    }
+  }
+  return meshed;
+}
+
 MeshingTask task_of(const SizeField& field, std::set<Entity> meshed, const CurveAdjuster& adjuster,
                     const std::map<Entity, Entity>& masters, std::set<Entity> companions) {
+  meshed = with_bare_curves(std::move(meshed), field.topology());
   for (const auto& [copy, master] : masters) {
     if (meshed.count(copy) > 0 && meshed.count(master) == 0) {
       throw Error(entity_name(copy) + " has a mesh, but it is a periodic copy of " +
@@ -90,7 +105,8 @@ void OrderedMesher::check_premeshed(const std::vector<MeshingPass>& passes) cons
       continue;
     }
     for (const Entity& curve : topology.lower(surface)) {
-      if (curve.dim == 1 && !premeshed_.contains(curve) && !has_no_length(curve, topology)) {
+      if (curve.dim == 1 && !premeshed_.contains(curve) && !gmsh::is_discrete(curve) &&
+          !has_no_length(curve, topology)) {
         throw Error(entity_name(surface) + " has a mesh, but " + entity_name(curve) +
                     " on its boundary has none: mesh both beforehand, or neither.");
       }

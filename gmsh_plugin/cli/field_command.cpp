@@ -19,6 +19,7 @@
 #include "model_file.h"
 #include "number_text.h"
 #include "progress.h"
+#include "quoted_text.h"
 #include "usage_error.h"
 
 namespace meshgrow::cli {
@@ -42,20 +43,21 @@ bool is_saved_field(const std::string& path) { return fs::path(path).extension()
 void print_next_steps(const std::string& output) {
   const std::string ending = fs::path(output).extension().string();
   if (ending == ".vtu") {
-    std::cout << "To look at it: paraview " << output << '\n';
+    std::cout << "To look at it: paraview " << shell_quoted(output) << '\n';
     return;
   }
   if (is_saved_field(output)) {
-    std::cout << "In Python: field = meshgrow.SizeField.load(\"" << output << "\")\n"
+    std::cout << "In Python: field = meshgrow.SizeField.load(" << double_quoted(output) << ")\n"
               << "In the .geo of an unchanged Gmsh:\n"
-              << "  Field[1] = ExternalProcess; Field[1].CommandLine = \"meshgrow serve " << output
-              << "\";\n  Background Field = 1; Mesh.MeshSizeExtendFromBoundary = 0;\n";
+              << "  Field[1] = ExternalProcess; Field[1].CommandLine = "
+              << double_quoted("meshgrow serve " + shell_quoted(output))
+              << ";\n  Background Field = 1; Mesh.MeshSizeExtendFromBoundary = 0;\n";
     return;
   }
-  std::cout << "To look at it: gmsh " << output << '\n';
+  std::cout << "To look at it: gmsh " << shell_quoted(output) << '\n';
   if (ending == ".pos") {
     std::cout << "As the background field of a model, in its .geo:\n"
-              << "  Merge \"" << output << "\";\n"
+              << "  Merge " << double_quoted(output) << ";\n"
               << "  Field[1] = PostView; Field[1].ViewIndex = 0; Background Field = 1;\n"
               << "  Mesh.MeshSizeExtendFromBoundary = 0;\n";
   }

@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <new>
 #include <string>
 #include <vector>
 
+#include "c_guard.h"
 #include "field_command.h"
 #include "gmsh_session.h"
 #include "mesh_command.h"
@@ -26,10 +28,48 @@ std::string version() {
   }
 }
 
-int fail(const std::exception& error, meshgrow::cli::ExitCode code) {
+int fail(const std::string& sentence, meshgrow::cli::ExitCode code) {
   std::cout.flush();
-  std::cerr << "meshgrow: " << error.what() << '\n';
+  std::cerr << "meshgrow: " << sentence << '\n';
   return code;
+}
+
+/// Throws UsageError if the first argument should be a command and is none.
+void check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments.front().rfind('-', 0) == 0 ||
+      app.get_subcommand_no_throw(arguments.front()) != nullptr) {
+    return;
+  }
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw meshgrow::cli::UsageError("There is no command \"" + arguments.front() +
+                                  "\": give one of " + names + ".");
+}
+
+/// What CLI11 says, as our own sentences are.
+int tell_wrong_use(const CLI::App& app, const CLI::ParseError& error) {
+  std::string sentence = error.what();
+  while (!sentence.empty() && (sentence.back() == '\n' || sentence.back() == '.')) {
+    sentence.pop_back();
+  }
+  std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+  std::string command = app.get_name();
+  for (const CLI::App* used : app.get_subcommands()) {
+    command += " " + used->get_name();
+  }
+  return fail(sentence + ": see " + command + " --help.", meshgrow::cli::wrong_use);
+}
+
+int told_all(int code) {
+  std::cout.flush();
+  return std::cout || code != meshgrow::cli::done
+             ? code
+             : fail(
+                   "Not all could be written to standard output: make room, or let it go to "
+                   "another place.",
+                   meshgrow::cli::work_failed);
 }
 
 int run(int argc, char** argv) {
@@ -51,24 +91,29 @@ int run(int argc, char** argv) {
     meshgrow::cli::add_field_command(app);
     meshgrow::cli::add_probe_command(app);
     meshgrow::cli::add_serve_command(app);
+    check_command(app, arguments);
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
     app.parse(std::move(arguments));
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    if (app.exit(error) == 0) {
-      return meshgrow::cli::done;
+    if (error.get_exit_code() == 0) {  // help, version
+      app.exit(error);
+      return told_all(meshgrow::cli::done);
     }
+    const int code = tell_wrong_use(app, error);
     if (app.got_subcommand("serve")) {
       meshgrow::cli::serve_nothing();  // Gmsh waits for answers all the same
     }
-    return meshgrow::cli::wrong_use;
+    return code;
   } catch (const meshgrow::cli::UsageError& error) {
-    return fail(error, meshgrow::cli::wrong_use);
+    return fail(error.what(), meshgrow::cli::wrong_use);
+  } catch (const std::bad_alloc&) {
+    return fail(meshgrow::c::out_of_memory, meshgrow::cli::work_failed);
   } catch (const std::exception& error) {
-    return fail(error, meshgrow::cli::work_failed);
+    return fail(error.what(), meshgrow::cli::work_failed);
   }
-  return meshgrow::cli::done;
+  return told_all(meshgrow::cli::done);
 }
 
 }  // namespace
@@ -76,5 +121,5 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) try {
   return run(argc, argv);
 } catch (const std::exception& error) {
-  return fail(error, meshgrow::cli::work_failed);
+  return fail(error.what(), meshgrow::cli::work_failed);
 }

@@ -18,6 +18,7 @@
 #include "onelab_functions.h"
 #include "output_file.h"
 #include "progress.h"
+#include "quoted_text.h"
 #include "usage_error.h"
 
 namespace meshgrow::cli {
@@ -168,8 +169,8 @@ void mesh(const MeshArguments& arguments) {
     std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
   }
   const bool acceptable = report(arguments, conditions, output, field.get());
-  std::cout << "\nWrote " << output.string() << ". To look at it: gmsh " << output.string()
-            << std::endl;
+  std::cout << "\nWrote " << output.string() << ". To look at it: gmsh "
+            << shell_quoted(output.string()) << std::endl;
   if (!acceptable) {
     throw CLI::RuntimeError(ExitCode::work_failed);
   }

@@ -56,6 +56,7 @@ void open_model(const std::vector<std::string>& files) {
     throw UsageError(files.front() +
                      " holds no geometry and no mesh: give a model that Gmsh can read.");
   }
+  warn_of_unusable_onelab_functions();
 }
 
 void open_model(const std::string& file) { open_model(std::vector<std::string>{file}); }

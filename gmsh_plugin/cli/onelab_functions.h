@@ -16,8 +16,11 @@ struct OnelabFunction {
 };
 
 /// Those that were defined since `forget_onelab_functions`, by name, which is the order of ONELAB;
-/// empty texts are left out.
+/// empty texts and numbers are left out.
 std::vector<OnelabFunction> onelab_functions();
+
+/// Warns, in Gmsh's log, of those that are left out.
+void warn_of_unusable_onelab_functions();
 
 /// Removes what models that were opened before have defined: ONELAB has one database for all.
 void forget_onelab_functions();

@@ -8,6 +8,7 @@
 #include "gmsh_api.h"
 #include "unfinished_file.h"
 #include "usage_error.h"
+#include "whole_file.h"
 
 namespace meshgrow::cli {
 
@@ -40,11 +41,15 @@ std::string ending_of_format() {
 }
 
 void check_writable(const fs::path& output, const std::string& remedy) {
-  const UnfinishedFile unfinished(output, output.extension().string());
-  const std::ofstream file(unfinished.path());
-  const bool blocked = fs::is_directory(output);
-  if (!file || blocked) {
-    const std::string reason = blocked ? "it is a directory" : std::strerror(errno);
+  std::string reason = reason_against_file(output.string());
+  if (reason.empty()) {
+    const UnfinishedFile unfinished(output, output.extension().string());
+    errno = 0;
+    if (!std::ofstream(unfinished.path())) {
+      reason = std::strerror(errno);
+    }
+  }
+  if (!reason.empty()) {
     throw UsageError("Cannot write " + output.string() + " (" + reason + "): " + remedy + ".");
   }
 }
@@ -64,6 +69,10 @@ void write_mesh(const fs::path& output) {
     throw Error("Gmsh did not write " + output.string() +
                 (problem.empty() ? "" : " (" + problem + ")") +
                 ": choose an ending that it knows, such as .msh.");
+  }
+  if (!has_room_behind(unfinished.path().string())) {  // Gmsh does not look whether it could write
+    throw Error("Gmsh could not write all of " + output.string() +
+                ": make room, or choose another place.");
   }
   unfinished.finish();
 }

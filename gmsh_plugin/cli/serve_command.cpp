@@ -94,7 +94,8 @@ ExitCode serve(const ServeArguments& arguments) {
   const SizesAt answer = [&](const Vec3* points, std::size_t count, double* to) {
     try {
       sizes(points, count, to);
-    } catch (const Error& error) {  // a damaged part of a saved field, found when it is touched
+    } catch (const std::exception& error) {
+      // A damaged part of a saved field, found when it is touched, or there is no memory.
       tell(std::string(error.what()) + " From here on Gmsh gets no sizes from here.");
       result = work_failed;
       sizes = no_sizes;

@@ -11,14 +11,14 @@ namespace meshgrow::cli {
 class UnfinishedFile {
  public:
   /// `ending`: of the name meanwhile; it tells Gmsh the format.
-  UnfinishedFile(std::filesystem::path place, const std::string& ending);
+  UnfinishedFile(const std::filesystem::path& place, const std::string& ending);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Moves it to its place, over an older file.
+  /// Moves it to its place, over an older file. Throws Error if that fails.
   void finish();
 
  private:

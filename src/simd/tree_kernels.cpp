@@ -4,6 +4,8 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "refused_kernels.h"
+
 namespace meshgrow::simd {
 
 namespace plain {
@@ -36,6 +38,11 @@ const TreeKernels& chosen() {
 }
 
 }  // namespace
+
+std::string refused_kernels() {
+  const char* wanted = std::getenv("MESHGROW_SIMD");
+  return wanted == nullptr || *wanted == '\0' || tree_kernels(wanted) != nullptr ? "" : wanted;
+}
 
 const TreeKernels* tree_kernels(const char* name) {
   if (std::strcmp(name, "plain") == 0) {

@@ -8,6 +8,7 @@ import subprocess
 import meshgrow
 import pytest
 
+import program
 from child import run_child
 from meshgrow import _library
 
@@ -142,3 +143,34 @@ def test_calls_without_a_field_say_so():
     assert _library.lib.meshgrow_field_register(None) == 1
     _library.lib.meshgrow_field_destroy(None)
     _library.lib.meshgrow_free(None)
+
+
+MODEL_AND_WARNINGS = """
+import gmsh, meshgrow, models
+gmsh.initialize(readConfigFiles=False)
+gmsh.option.setNumber("General.Terminal", 0)
+models.square()
+gmsh.logger.start()
+meshgrow.SizeField(), meshgrow.SizeField()
+print([m for m in gmsh.logger.get() if "MESHGROW_SIMD" in m])
+"""
+
+
+def test_instructions_that_the_processor_lacks_are_told_once():
+    (told,) = run_child(MODEL_AND_WARNINGS, MESHGROW_SIMD="mmx")
+    assert told.count("Warning: ") == 1 and 'MESHGROW_SIMD is "mmx"' in told
+    for value in ("plain", ""):
+        assert run_child(MODEL_AND_WARNINGS, MESHGROW_SIMD=value) == ["[]"]
+
+
+def test_they_are_told_without_a_gmsh_too(tmp_path):
+    box = tmp_path / "box.geo"
+    box.write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n')
+    saved = tmp_path / "a.mgf"
+    assert program.run("field", box, "-o", saved, "--size-function",
+                       "fixed source Point{1} attach Volume{1} size 0.2 growth 1.2 limit 0.5"
+                       ).returncode == 0
+    result = program.run("probe", saved, "--at", "0,0,0", MESHGROW_SIMD="mmx",
+                         MESHGROW_GMSH_LIB="/nowhere/libgmsh.so")
+    assert result.returncode == 0
+    assert 'MESHGROW_SIMD is "mmx"' in result.stderr

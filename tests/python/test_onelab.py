@@ -108,3 +108,13 @@ def test_report_measures_against_the_definitions_of_each_file(write, tmp_path):
     columns = [line.split() for line in lines[1:]]
     assert columns[0][6] != "-" and columns[1][6] == "-"
     assert result.returncode == 1 and "without.geo: length_median is unknown" in result.stderr
+
+
+def test_what_defines_nothing_is_told(write, tmp_path):
+    result = run("mesh", write(DEFINED), "-1", "-o", tmp_path / "a.msh")
+    assert result.returncode == 0
+    told = [line for line in (result.stdout + result.stderr).splitlines()
+            if "makes no size function" in line]
+    assert len(told) == 2
+    assert "Size functions/a number is a number" in told[0]
+    assert "Size functions/c empty is empty" in told[1]

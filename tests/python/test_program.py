@@ -207,9 +207,20 @@ def test_no_libgmsh(box):
     assert_refused(run("mesh", box, MESHGROW_GMSH_LIB="/nowhere/libgmsh.so"), "MESHGROW_GMSH_LIB")
 
 
-def test_wrong_command_line():
-    assert run("mesh").returncode == 2
-    assert run("weave").returncode == 2
+@pytest.mark.parametrize("arguments, words", [
+    ([], ["subcommand", "meshgrow --help"]),
+    (["mesh"], ["models", "meshgrow mesh --help"]),
+    (["weave"], ['no command "weave"', "mesh, report, field, probe, serve"]),
+    (["mesh", "a.geo", "--nonsense"], ["--nonsense"]),
+    (["mesh", "a.geo", "--evaluator", "best"], ["--evaluator", "best"]),
+    (["report", "a.msh", "--dim", "4"], ["--dim", "4"]),
+    (["probe", "a.geo"], ["--at"]),
+])
+def test_wrong_command_line(arguments, words):
+    result = run(*arguments)
+    assert result.returncode == 2
+    assert_refused(result, *words)
+    assert len(result.stderr.splitlines()) == 1 and result.stderr.endswith(".\n")
 
 
 def test_exit_codes(box, tmp_path):

@@ -122,7 +122,7 @@ def version() -> str:
 
 
 def raise_last_error() -> NoReturn:
-    raise Error(lib.meshgrow_last_error().decode())
+    raise Error(lib.meshgrow_last_error().decode(errors="replace"))
 
 
 def check(failed: Union[int, bool]) -> None:
@@ -151,7 +151,7 @@ def take_text(text: Optional[int]) -> str:
     if not text:
         raise_last_error()
     try:
-        return ctypes.string_at(text).decode()
+        return ctypes.string_at(text).decode(errors="replace")
     finally:
         lib.meshgrow_free(text)
 

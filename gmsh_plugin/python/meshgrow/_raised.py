@@ -36,7 +36,7 @@ class Raised:
         def listen(line: bytes, _: Any) -> int:
             if not self.stops:
                 try:
-                    progress(line.decode())
+                    progress(line.decode(errors="replace"))
                 except BaseException as raised:  # KeyboardInterrupt as well
                     self.keep(raised)
             return int(self.stops)

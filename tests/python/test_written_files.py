@@ -1,0 +1,212 @@
+"""Files that we write are there completely, or as before: a full disk, a kill, places that no file
+can have."""
+
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+
+import gmsh
+import meshgrow
+import pytest
+
+import models
+from meshes import premesh
+from program import PROGRAM, run
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+BOX = """
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Mesh.MeshSizeMax = 0.05;
+"""
+FIXED = "fixed source Point{1} attach Volume{1} size 0.03 growth 1.2 limit 0.1"
+PRECIOUS = "of before"
+OUTPUTS = ["sizes.mgf", "sizes.vtu", "sizes.pos", "sizes.msh", "mesh.msh", "mesh.stl",
+           "report.json"]
+FIELDS = OUTPUTS[:4]
+#: More than the temporary files that Gmsh and we need, less than any output but the report.
+ROOM = 150000
+
+
+@pytest.fixture
+def box(tmp_path):
+    path = tmp_path / "box.geo"
+    path.write_text(BOX)
+    return path
+
+
+@pytest.fixture(scope="session")
+def failing_writes(tmp_path_factory):
+    if shutil.which("cc") is None:
+        pytest.skip("no C compiler")
+    path = tmp_path_factory.mktemp("library") / "failing_writes.so"
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", str(path),
+                    os.path.join(HERE, "failing_writes.c"), "-ldl"], check=True)
+    return str(path)
+
+
+def command(box, output):
+    if output in FIELDS:
+        return ["field", box, "-o", box.parent / output, "--size-function", FIXED]
+    if output == "report.json":
+        return ["mesh", box, "-2", "-o", box.parent / "a.msh", "--report", box.parent / output]
+    return ["mesh", box, "-2", "-o", box.parent / output]
+
+
+def run_with_room(arguments, is_ignored):
+    """The program, whose files can have ROOM bytes. Where the signal of that is not ignored, the
+    process ends at once at the first byte more, as it would when it is killed."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN if is_ignored else signal.SIG_DFL)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM, ROOM))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          preexec_fn=limit)
+
+
+def names(folder):
+    return sorted(p.name for p in folder.iterdir())
+
+
+def assert_refused(result, code, *words):
+    assert result.returncode == code, result.stderr
+    told = [line for line in result.stderr.splitlines() if line.startswith("meshgrow: ")]
+    assert len(told) == 1, result.stderr
+    for word in words:
+        assert word in told[0], told[0]
+
+
+@pytest.mark.parametrize("output", OUTPUTS[:-1])
+def test_a_full_disk_leaves_the_old_file(box, output):
+    place = box.parent / output
+    place.write_text(PRECIOUS)
+    before = names(box.parent)
+    result = run_with_room(command(box, output), is_ignored=True)
+    assert_refused(result, 1, output, "make room")
+    assert place.read_text() == PRECIOUS
+    assert names(box.parent) == before
+
+
+def test_a_full_disk_leaves_the_old_report(box, failing_writes):
+    place = box.parent / "report.json"
+    place.write_text(PRECIOUS)
+    assert_refused(run(*command(box, "report.json"), LD_PRELOAD=failing_writes,
+                       FAIL_WRITES="full"), 1, "report.json", "No space left")
+    assert place.read_text() == PRECIOUS
+    assert names(box.parent) == ["a.msh", "box.geo", "report.json"]  # the mesh was written before
+
+
+@pytest.mark.parametrize("output", OUTPUTS[:-1])
+def test_a_kill_while_writing_leaves_the_old_file(box, output):
+    place = box.parent / output
+    place.write_text(PRECIOUS)
+    assert run_with_room(command(box, output), is_ignored=False).returncode == -signal.SIGXFSZ
+    assert place.read_text() == PRECIOUS
+    assert run(*command(box, output)).returncode == 0
+    assert place.stat().st_size > ROOM
+    assert names(box.parent) == sorted(["box.geo", output])  # what the kill left is gone
+
+
+@pytest.mark.parametrize("output, when", [("sizes.mgf", "kill"), ("sizes.pos", "move"),
+                                          ("mesh.msh", "move"), ("report.json", "move")])
+def test_sigkill_leaves_the_old_file(box, failing_writes, output, when):
+    place = box.parent / output
+    place.write_text(PRECIOUS)
+    killed = run(*command(box, output), LD_PRELOAD=failing_writes, FAIL_WRITES=when)
+    assert killed.returncode == -signal.SIGKILL
+    assert place.read_text() == PRECIOUS
+    assert run(*command(box, output)).returncode == 0
+    assert place.read_bytes() != PRECIOUS.encode()
+    assert set(names(box.parent)) - {"a.msh"} == {"box.geo", output}
+
+
+def test_python_is_told_of_a_full_disk(tmp_path):
+    volume = models.box()
+    field = meshgrow.SizeField(evaluator="grid")
+    field.add_fixed([(0, 1)], [volume], 0.03, 1.2, 0.1)
+    field.refresh()
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    for name in FIELDS:
+        path = tmp_path / name
+        path.write_text(PRECIOUS)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (10000, hard))  # Python ignores the signal
+        try:
+            with pytest.raises(meshgrow.Error, match="%s .*room" % name):
+                field.save(path) if name.endswith(".mgf") else field.write_view(path)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        assert path.read_text() == PRECIOUS
+    assert names(tmp_path) == sorted(FIELDS)
+    field.save(tmp_path / FIELDS[0])
+    assert (tmp_path / FIELDS[0]).stat().st_size > 10000
+
+
+def test_standard_output_that_is_full_is_told(box):
+    assert run(*command(box, "mesh.msh")).returncode == 0
+    with open("/dev/full", "w") as full:
+        result = subprocess.run([PROGRAM, "report", str(box.parent / "mesh.msh"), "--dim", "2",
+                                 "--json"], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert_refused(result, 1, "standard output")
+
+
+# ==== Places that no file can have
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+@pytest.mark.parametrize("place", ["a file in place of the directory", "a directory", "a pipe"])
+def test_a_place_that_no_file_can_have_is_refused(box, output, place):
+    path = box.parent / output
+    arguments = command(box, output)
+    if place == "a directory":
+        path.mkdir()
+    elif place == "a pipe":
+        os.mkfifo(path)
+    else:
+        (box.parent / "file").write_text(PRECIOUS)
+        arguments = [str(a).replace(str(path), str(box.parent / "file" / output))
+                     for a in arguments]
+    before = names(box.parent)
+    result = run(*arguments)
+    assert_refused(result, result.returncode, "Cannot write", output)
+    assert result.returncode in (1, 2)
+    assert names(box.parent) == before
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
+@pytest.mark.parametrize("output", ["sizes.mgf", "sizes.vtu", "mesh.msh", "report.json"])
+def test_a_read_only_directory_is_told(box, output):
+    folder, other = box.parent / "closed", box.parent / "open"
+    folder.mkdir(mode=0o555)
+    other.mkdir()
+    other.chmod(0o777)
+    arguments = [str(a).replace(str(box.parent / output), str(folder / output))
+                 for a in command(box, output)]
+    if output == "report.json":
+        arguments[arguments.index("-o") + 1] = str(other / "a.msh")
+    nobody = 65534
+
+    def become_nobody():
+        os.setgroups([])
+        os.setgid(nobody)
+        os.setuid(nobody)
+    for part in box.parents:  # pytest's own are closed to others
+        if "pytest" in part.name or part == box.parent:
+            part.chmod(0o755)
+    result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                            preexec_fn=become_nobody)
+    if "No libgmsh" in result.stderr or "does not name a libgmsh" in result.stderr:
+        pytest.skip("nobody cannot read the library")
+    assert_refused(result, result.returncode, "Cannot write", output, "Permission denied")
+    assert names(folder) == []
+
+
+def test_a_link_stays_a_link(box):
+    place, link = box.parent / "real.mgf", box.parent / "sizes.mgf"
+    place.write_text(PRECIOUS)
+    link.symlink_to(place.name)
+    assert run(*command(box, "sizes.mgf")).returncode == 0
+    assert link.is_symlink() and place.stat().st_size > ROOM
+    assert names(box.parent) == ["box.geo", "real.mgf", "sizes.mgf"]
