@@ -19,8 +19,15 @@ TemporaryDirectory::TemporaryDirectory() {
 }
 
 TemporaryDirectory::~TemporaryDirectory() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    try {
+      std::error_code ignored;
+      std::filesystem::remove_all(path_, ignored);
+      return;
+    } catch (...) {
+      // There was no memory, and there may be some now.
+    }
+  }
 }
 
 }  // namespace meshgrow

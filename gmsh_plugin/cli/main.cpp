@@ -36,12 +36,14 @@ int fail(const std::string& sentence, meshgrow::cli::ExitCode code) {
 
 /// Throws UsageError if the first argument should be a command and is none.
 void check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
-  if (arguments.empty() || arguments.front().rfind('-', 0) == 0 ||
-      app.get_subcommand_no_throw(arguments.front()) != nullptr) {
+  if (arguments.empty() || arguments.front().rfind('-', 0) == 0) {
     return;
   }
   std::string names;
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == arguments.front()) {
+      return;
+    }
     names += (names.empty() ? "" : ", ") + command->get_name();
   }
   throw meshgrow::cli::UsageError("There is no command \"" + arguments.front() +

@@ -61,12 +61,12 @@ AddressRange range_of(bool of_program) {
 }
 
 /// Whether the first caller that is not of the standard library is of the program.
-bool is_asked_for_by_program() {
+__attribute__((noinline)) bool is_asked_for_by_program() {
   static const AddressRange program = range_of(true);
   static const AddressRange standard = range_of(false);
   std::array<void*, 16> callers = {};
   const int count = backtrace(callers.data(), static_cast<int>(callers.size()));
-  // The first two are this function and the one that decides.
+  // The first three are this function, the one that decides, and `new` or `malloc` itself.
   for (int i = 3; i < count; ++i) {
     if (!standard.contains(callers[static_cast<std::size_t>(i)])) {
       return program.contains(callers[static_cast<std::size_t>(i)]);

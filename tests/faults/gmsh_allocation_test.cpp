@@ -79,7 +79,7 @@ class OutOfMemoryInGmsh : public testing::Test {
     std::string name = (fs::temp_directory_path() / "allocationXXXXXX").string();
     folder_ = mkdtemp(name.data());
     std::ofstream(folder_ / "model.geo") << two_boxes;
-    gmsh::initialize({"test", "-noenv", "-v", "0", "-nt", "1"});
+    gmsh::initialize({"test", "-v", "0", "-nt", "1"});
     gmsh::open((folder_ / "model.geo").string());
     gmsh::generate(2);
   }
@@ -109,7 +109,7 @@ class OutOfMemoryInGmsh : public testing::Test {
 
 TEST_F(OutOfMemoryInGmsh, AFieldIsMadeOrNot) {
   fail_at_each_step(
-      200, [] { return 0; },
+      80, [] { return 0; },
       [](int) {
         const FieldPointer field = made_field();
         done(meshgrow_field_refresh(field.get()));
@@ -120,7 +120,7 @@ TEST_F(OutOfMemoryInGmsh, AFieldIsMadeOrNot) {
 TEST_F(OutOfMemoryInGmsh, ARegisteredFieldThatIsChangedAnswersAsBefore) {
   std::vector<double> before;
   fail_at_each_step(
-      200,
+      80,
       [&before] {
         FieldPointer field = made_field();
         done(meshgrow_field_register(field.get()));
@@ -142,7 +142,7 @@ TEST_F(OutOfMemoryInGmsh, ARegisteredFieldThatIsChangedAnswersAsBefore) {
 
 TEST_F(OutOfMemoryInGmsh, RegisteringChangesNothingUntilItIsDone) {
   fail_at_each_step(
-      100, [] { return made_field(); },
+      60, [] { return made_field(); },
       [](const FieldPointer& field) { done(meshgrow_field_register(field.get())); },
       [before = state()](const FieldPointer& field) {
         EXPECT_EQ(state(), before);
@@ -199,7 +199,7 @@ TEST_F(OutOfMemoryInGmsh, TextsAndFilesAreWholeOrNotThere) {
     SCOPED_TRACE(which);
     const std::string whole = cli::take_text(text_of(which));
     fail_at_each_step(
-        60, [] { return 0; },
+        30, [] { return 0; },
         [&](int) {
           char* text = text_of(which);
           done(text == nullptr ? 1 : 0);

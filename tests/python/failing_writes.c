@@ -2,7 +2,9 @@
 
    FAIL_WRITES=full  there is no room for any of it
    FAIL_WRITES=kill  the process is killed (SIGKILL) at the second piece
-   FAIL_WRITES=move  it is killed when the file is complete and about to be moved to its place */
+   FAIL_WRITES=move  it is killed when the file is complete and about to be moved to its place
+
+   FAIL_FILE names a part of the path of the only file concerned. */
 
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -30,7 +32,8 @@ static int is_unfinished(int file) {
     return 0;
   }
   path[length] = '\0';
-  return strstr(path, ".unfinished") != NULL;
+  const char *only = getenv("FAIL_FILE");
+  return strstr(path, ".unfinished") != NULL && (only == NULL || strstr(path, only) != NULL);
 }
 
 /* Whether the piece must not be written. */

@@ -1,7 +1,6 @@
 """Files that we write are there completely, or as before: a full disk, a kill, places that no file
 can have."""
 
-import json
 import os
 import resource
 import shutil
@@ -13,16 +12,15 @@ import meshgrow
 import pytest
 
 import models
-from meshes import premesh
 from program import PROGRAM, run
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-BOX = """
+BALL = """
 SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 1, 1, 1};
+Sphere(1) = {0, 0, 0, 1};
 Mesh.MeshSizeMax = 0.05;
 """
-FIXED = "fixed source Point{1} attach Volume{1} size 0.03 growth 1.2 limit 0.1"
+FIXED = "fixed source Surface{1} attach Volume{1} size 0.05 growth 1.2 limit 0.5"
 PRECIOUS = "of before"
 OUTPUTS = ["sizes.mgf", "sizes.vtu", "sizes.pos", "sizes.msh", "mesh.msh", "mesh.stl",
            "report.json"]
@@ -32,9 +30,9 @@ ROOM = 150000
 
 
 @pytest.fixture
-def box(tmp_path):
-    path = tmp_path / "box.geo"
-    path.write_text(BOX)
+def ball(tmp_path):
+    path = tmp_path / "ball.geo"
+    path.write_text(BALL)
     return path
 
 
@@ -48,12 +46,12 @@ def failing_writes(tmp_path_factory):
     return str(path)
 
 
-def command(box, output):
+def command(ball, output):
     if output in FIELDS:
-        return ["field", box, "-o", box.parent / output, "--size-function", FIXED]
+        return ["field", ball, "-o", ball.parent / output, "--size-function", FIXED]
     if output == "report.json":
-        return ["mesh", box, "-2", "-o", box.parent / "a.msh", "--report", box.parent / output]
-    return ["mesh", box, "-2", "-o", box.parent / output]
+        return ["mesh", ball, "-2", "-o", ball.parent / "a.msh", "--report", ball.parent / output]
+    return ["mesh", ball, "-2", "-o", ball.parent / output]
 
 
 def run_with_room(arguments, is_ignored):
@@ -80,53 +78,53 @@ def assert_refused(result, code, *words):
 
 
 @pytest.mark.parametrize("output", OUTPUTS[:-1])
-def test_a_full_disk_leaves_the_old_file(box, output):
-    place = box.parent / output
+def test_a_full_disk_leaves_the_old_file(ball, output):
+    place = ball.parent / output
     place.write_text(PRECIOUS)
-    before = names(box.parent)
-    result = run_with_room(command(box, output), is_ignored=True)
+    before = names(ball.parent)
+    result = run_with_room(command(ball, output), is_ignored=True)
     assert_refused(result, 1, output, "make room")
     assert place.read_text() == PRECIOUS
-    assert names(box.parent) == before
+    assert names(ball.parent) == before
 
 
-def test_a_full_disk_leaves_the_old_report(box, failing_writes):
-    place = box.parent / "report.json"
+def test_a_full_disk_leaves_the_old_report(ball, failing_writes):
+    place = ball.parent / "report.json"
     place.write_text(PRECIOUS)
-    assert_refused(run(*command(box, "report.json"), LD_PRELOAD=failing_writes,
-                       FAIL_WRITES="full"), 1, "report.json", "No space left")
+    assert_refused(run(*command(ball, "report.json"), LD_PRELOAD=failing_writes,
+                       FAIL_WRITES="full", FAIL_FILE=".json"), 1, "report.json", "No space left")
     assert place.read_text() == PRECIOUS
-    assert names(box.parent) == ["a.msh", "box.geo", "report.json"]  # the mesh was written before
+    assert names(ball.parent) == ["a.msh", "ball.geo", "report.json"]  # the mesh was written before
 
 
 @pytest.mark.parametrize("output", OUTPUTS[:-1])
-def test_a_kill_while_writing_leaves_the_old_file(box, output):
-    place = box.parent / output
+def test_a_kill_while_writing_leaves_the_old_file(ball, output):
+    place = ball.parent / output
     place.write_text(PRECIOUS)
-    assert run_with_room(command(box, output), is_ignored=False).returncode == -signal.SIGXFSZ
+    assert run_with_room(command(ball, output), is_ignored=False).returncode == -signal.SIGXFSZ
     assert place.read_text() == PRECIOUS
-    assert run(*command(box, output)).returncode == 0
+    assert run(*command(ball, output)).returncode == 0
     assert place.stat().st_size > ROOM
-    assert names(box.parent) == sorted(["box.geo", output])  # what the kill left is gone
+    assert names(ball.parent) == sorted(["ball.geo", output])  # what the kill left is gone
 
 
 @pytest.mark.parametrize("output, when", [("sizes.mgf", "kill"), ("sizes.pos", "move"),
                                           ("mesh.msh", "move"), ("report.json", "move")])
-def test_sigkill_leaves_the_old_file(box, failing_writes, output, when):
-    place = box.parent / output
+def test_sigkill_leaves_the_old_file(ball, failing_writes, output, when):
+    place = ball.parent / output
     place.write_text(PRECIOUS)
-    killed = run(*command(box, output), LD_PRELOAD=failing_writes, FAIL_WRITES=when)
+    killed = run(*command(ball, output), LD_PRELOAD=failing_writes, FAIL_WRITES=when)
     assert killed.returncode == -signal.SIGKILL
     assert place.read_text() == PRECIOUS
-    assert run(*command(box, output)).returncode == 0
+    assert run(*command(ball, output)).returncode == 0
     assert place.read_bytes() != PRECIOUS.encode()
-    assert set(names(box.parent)) - {"a.msh"} == {"box.geo", output}
+    assert set(names(ball.parent)) - {"a.msh"} == {"ball.geo", output}
 
 
 def test_python_is_told_of_a_full_disk(tmp_path):
-    volume = models.box()
+    volume = models.single(lambda occ: occ.addSphere(0, 0, 0, 1))
     field = meshgrow.SizeField(evaluator="grid")
-    field.add_fixed([(0, 1)], [volume], 0.03, 1.2, 0.1)
+    field.add_fixed(gmsh.model.getEntities(2), [volume], 0.05, 1.2, 0.5)
     field.refresh()
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     for name in FIELDS:
@@ -144,10 +142,10 @@ def test_python_is_told_of_a_full_disk(tmp_path):
     assert (tmp_path / FIELDS[0]).stat().st_size > 10000
 
 
-def test_standard_output_that_is_full_is_told(box):
-    assert run(*command(box, "mesh.msh")).returncode == 0
+def test_standard_output_that_is_full_is_told(ball):
+    assert run(*command(ball, "mesh.msh")).returncode == 0
     with open("/dev/full", "w") as full:
-        result = subprocess.run([PROGRAM, "report", str(box.parent / "mesh.msh"), "--dim", "2",
+        result = subprocess.run([PROGRAM, "report", str(ball.parent / "mesh.msh"), "--dim", "2",
                                  "--json"], stdout=full, stderr=subprocess.PIPE, text=True)
     assert_refused(result, 1, "standard output")
 
@@ -157,33 +155,33 @@ def test_standard_output_that_is_full_is_told(box):
 
 @pytest.mark.parametrize("output", OUTPUTS)
 @pytest.mark.parametrize("place", ["a file in place of the directory", "a directory", "a pipe"])
-def test_a_place_that_no_file_can_have_is_refused(box, output, place):
-    path = box.parent / output
-    arguments = command(box, output)
+def test_a_place_that_no_file_can_have_is_refused(ball, output, place):
+    path = ball.parent / output
+    arguments = command(ball, output)
     if place == "a directory":
         path.mkdir()
     elif place == "a pipe":
         os.mkfifo(path)
     else:
-        (box.parent / "file").write_text(PRECIOUS)
-        arguments = [str(a).replace(str(path), str(box.parent / "file" / output))
+        (ball.parent / "file").write_text(PRECIOUS)
+        arguments = [str(a).replace(str(path), str(ball.parent / "file" / output))
                      for a in arguments]
-    before = names(box.parent)
+    before = names(ball.parent)
     result = run(*arguments)
     assert_refused(result, result.returncode, "Cannot write", output)
     assert result.returncode in (1, 2)
-    assert names(box.parent) == before
+    assert names(ball.parent) == before
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
 @pytest.mark.parametrize("output", ["sizes.mgf", "sizes.vtu", "mesh.msh", "report.json"])
-def test_a_read_only_directory_is_told(box, output):
-    folder, other = box.parent / "closed", box.parent / "open"
+def test_a_read_only_directory_is_told(ball, output):
+    folder, other = ball.parent / "closed", ball.parent / "open"
     folder.mkdir(mode=0o555)
     other.mkdir()
     other.chmod(0o777)
-    arguments = [str(a).replace(str(box.parent / output), str(folder / output))
-                 for a in command(box, output)]
+    arguments = [str(a).replace(str(ball.parent / output), str(folder / output))
+                 for a in command(ball, output)]
     if output == "report.json":
         arguments[arguments.index("-o") + 1] = str(other / "a.msh")
     nobody = 65534
@@ -192,8 +190,8 @@ def test_a_read_only_directory_is_told(box, output):
         os.setgroups([])
         os.setgid(nobody)
         os.setuid(nobody)
-    for part in box.parents:  # pytest's own are closed to others
-        if "pytest" in part.name or part == box.parent:
+    for part in ball.parents:  # pytest's own are closed to others
+        if "pytest" in part.name or part == ball.parent:
             part.chmod(0o755)
     result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
                             preexec_fn=become_nobody)
@@ -203,10 +201,10 @@ def test_a_read_only_directory_is_told(box, output):
     assert names(folder) == []
 
 
-def test_a_link_stays_a_link(box):
-    place, link = box.parent / "real.mgf", box.parent / "sizes.mgf"
+def test_a_link_stays_a_link(ball):
+    place, link = ball.parent / "real.mgf", ball.parent / "sizes.mgf"
     place.write_text(PRECIOUS)
     link.symlink_to(place.name)
-    assert run(*command(box, "sizes.mgf")).returncode == 0
+    assert run(*command(ball, "sizes.mgf")).returncode == 0
     assert link.is_symlink() and place.stat().st_size > ROOM
-    assert names(box.parent) == ["box.geo", "real.mgf", "sizes.mgf"]
+    assert names(ball.parent) == ["ball.geo", "real.mgf", "sizes.mgf"]
