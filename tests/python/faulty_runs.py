@@ -44,6 +44,30 @@ def mapped_square():
     return field, 2, [model.bottom], [model.face]
 
 
+class RegisteredField(meshgrow.SizeField):
+    """Its `generate` is Gmsh's own, with the field registered."""
+
+    def generate(self, dim=3, remesh=False):
+        current = gmsh.model.getCurrent()
+        try:
+            self.register()
+            gmsh.model.setCurrent("square")
+            gmsh.model.mesh.generate(dim)
+        finally:
+            gmsh.model.setCurrent(current)
+            for _ in range(2):
+                self.unregister()
+
+
+def registered_square():
+    """A source that is meshed only in the run of Gmsh's own."""
+    model = models.square()
+    field = RegisteredField()
+    field.add_mesh([model.bottom], [model.face], 1.2, 0.5)
+    field.add_fixed([model.top], [model.face], 0.1, 1.2, 0.5)
+    return field, 2, [], [model.face]
+
+
 def volume_in_volume():
     """A ball in a box; the face between them is meshed, of second order."""
     model = models.sphere_in_box(side=3.0)
@@ -192,7 +216,8 @@ def main(scenario, most):
                       % (number, len(calls), name, action, sentence, problem))
         if name not in QUIET:
             run = Run(scenario)
-            if not run.fail_ever_after(number):
+            may_go_on = isinstance(run.field, RegisteredField)  # Gmsh does, with its own sizes
+            if not run.fail_ever_after(number) and not may_go_on:
                 print("from call %d of %d (%s) on, no error" % (number, len(calls), name))
     print("%d failed, passed over: %s" % (failed, dict(+passed_over)))
 
