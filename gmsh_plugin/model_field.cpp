@@ -54,8 +54,9 @@ ModelField::ModelField() : field_(topology_of_current_model()), answers_(field_)
   warn_of_refused_kernels();
   model_ = gmsh::current_model();
   for (const Entity& point : field_.topology().entities(0)) {
-    if (!gmsh::is_discrete(point)) {
-      points_[point] = gmsh::points_at(point, {}).at(0);
+    const std::vector<Vec3> places = gmsh::points_at(point, {});
+    if (places.size() == 1 && !gmsh::is_discrete(point)) {
+      points_[point] = places.front();
     }
   }
   field_.options().boundary = boundary_triangles;

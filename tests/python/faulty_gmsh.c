@@ -1,5 +1,5 @@
-/* A libgmsh that passes all calls on to the one that REAL_GMSH_LIB names, but for one, which fails or
-   is interrupted. It says which one it is by faulty_arm, or, for a program, by the environment
+/* A libgmsh that passes all calls on to the one that REAL_GMSH_LIB names, but for one, which fails
+   or is interrupted. It says which one it is by faulty_arm, or, for a program, by the environment
    variable FAULTY_GMSH ("name call action").
 
    Arguments are passed on as whole words, which suits all functions but those with a double. */
@@ -18,7 +18,7 @@ static enum Action armed_action = fail_before;
 
 enum { most_names = 200000 };
 static const char* names[most_names];
-static long count = 0;         /* of all calls since it was armed */
+static long count = 0;          /* of all calls since it was armed */
 static long matching_count = 0; /* of those of the armed name */
 
 static void* real(const char* name) {
@@ -75,23 +75,23 @@ static int count_call(const char* name) {
   return matching_count == armed_call ? (int)armed_action : 0;
 }
 
-#define CALL(name, type, parameters, arguments, error)              \
-  long name parameters {                                            \
-    const int action = count_call(#name);                           \
-    long result = 0;                                                \
-    if (action == interrupt_before) {                               \
-      raise(SIGINT);                                                \
-    }                                                               \
-    if (action != fail_before) {                                    \
-      result = ((long(*) type)real(#name))arguments;                \
-    }                                                               \
-    if (action == fail_before || action == fail_after) {            \
-      *(int*)(error) = 1;                                           \
-    }                                                               \
-    if (action == interrupt_after) {                                \
-      raise(SIGINT);                                                \
-    }                                                               \
-    return result;                                                  \
+#define CALL(name, type, parameters, arguments, error)   \
+  long name parameters {                                 \
+    const int action = count_call(#name);                \
+    long result = 0;                                     \
+    if (action == interrupt_before) {                    \
+      raise(SIGINT);                                     \
+    }                                                    \
+    if (action != fail_before) {                         \
+      result = ((long(*) type)real(#name))arguments;     \
+    }                                                    \
+    if (action == fail_before || action == fail_after) { \
+      *(int*)(error) = 1;                                \
+    }                                                    \
+    if (action == interrupt_after) {                     \
+      raise(SIGINT);                                     \
+    }                                                    \
+    return result;                                       \
   }
 
 #define T1 long
@@ -198,10 +198,13 @@ PASS_ON(gmshModelMeshPartition, 2)
 
 void gmshFree(void* memory) { ((void (*)(void*))real("gmshFree"))(memory); }
 
-/* Questions for sizes count as calls of "size 1", "size 2" and "size 3", by dimension. */
+/* Questions for sizes count as calls of "size0" to "size3", by dimension. */
 
+#ifdef SINCE_49
 typedef double (*Callback)(int, int, double, double, double, double, void*);
-typedef double (*Callback48)(int, int, double, double, double, void*);
+#else
+typedef double (*Callback)(int, int, double, double, double, void*);
+#endif
 typedef struct {
   long callback;
   void* data;
@@ -223,7 +226,7 @@ static double ask(int dim, int tag, double x, double y, double z, double lc, voi
 #else
 static double ask(int dim, int tag, double x, double y, double z, void* data) {
   count_question(dim);
-  return ((Callback48)((Asked*)data)->callback)(dim, tag, x, y, z, ((Asked*)data)->data);
+  return ((Callback)((Asked*)data)->callback)(dim, tag, x, y, z, ((Asked*)data)->data);
 }
 #endif
 

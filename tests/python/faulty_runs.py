@@ -129,7 +129,7 @@ class Run:
             gmsh_calls.arm(0)
 
     def fail_ever_after(self, call):
-        """As if Gmsh were finalized within the run: nothing can be restored, but nothing crashes."""
+        """As if Gmsh were finalized within the run: nothing is restored, but nothing crashes."""
         sentence = self.fail_at(call, faulty.FAIL_EVER_AFTER)
         del self.field
         gmsh_calls.arm(0)
@@ -185,7 +185,8 @@ def chosen(calls, most):
     questions for sizes, nor of what Gmsh is asked by their answers."""
     by_name = {}
     for number, name in enumerate(calls, 1):
-        if not name.startswith("size") and not (number > 1 and calls[number - 2].startswith("size")):
+        before = calls[number - 2] if number > 1 else ""
+        if not name.startswith("size") and not before.startswith("size"):
             by_name.setdefault(name, []).append(number)
     result = set()
     for numbers in by_name.values():

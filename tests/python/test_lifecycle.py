@@ -1,4 +1,4 @@
-"""Models that are cleared, removed, rebuilt or changed while a field is theirs, and sessions that end.
+"""Models that are cleared, removed, rebuilt or changed while a field is theirs; sessions that end.
 
 Each in a process of its own, since a failure may be a crash."""
 
@@ -125,7 +125,7 @@ fine = field_of(first, 0.04)  # the same tags
 
 
 def test_of_two_models_each_gets_the_sizes_of_its_own_registered_field():
-    """Gmsh 4.8 has one callback for all models: there the second field is refused, in a sentence."""
+    """Gmsh 4.8 has one callback for all models: there a sentence refuses the second field."""
     lines = run(TWO_MODELS + """
 print(gmsh.GMSH_API_VERSION_MINOR)
 coarse.register()  # of the other model, which is not current
