@@ -50,6 +50,15 @@ halves() {
   return $failed
 }
 
+# Whether ThreadSanitizer, OpenMP and Archer work together here.
+tells_races() {
+  local program=$thread/race_on_purpose
+  clang++ -O1 -g1 -fsanitize=thread -fopenmp tests/threads/race_on_purpose.cpp -o "$program"
+  local told=0
+  "$program" 2>"$program.log" || told=$?
+  [ "$told" = 66 ] && grep -q 'data race' "$program.log" && "$program" in-turns
+}
+
 export UBSAN_OPTIONS=print_stacktrace=1
 # The trees of facets and all that stands on them, by each of the instruction sets that the
 # processor has; the fastest is the one without a name.
@@ -96,7 +105,8 @@ if wants thread; then
   archer=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -n 1)
   export OMP_TOOL_LIBRARIES=$archer GTEST_BRIEF=1
   # Gmsh is not instrumented: what it does between locks that cannot be seen is left alone.
-  export TSAN_OPTIONS=ignore_noninstrumented_modules=1
+  export TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1
+  check "thread: a race on purpose is told, turns are not" tells_races
   check "thread: core" "$thread/bin/core_tests" --gtest_filter='*Thread*:ParallelFor.*'
   for simd in "${kernels[@]}"; do
     check "thread: evaluation and building, $simd kernels" env MESHGROW_SIMD="$simd" \
