@@ -155,6 +155,7 @@ TEST(GridProperties, AreNeverCoarserThanAskedBetweenASteepSlopeAndTheLimit) {
   const BackgroundGrid grid = interpolating_grid(model);
   Random random(1);
   std::vector<Vec3> points;
+  points.reserve(1000);
   for (int i = 0; i < 1000; ++i) {
     points.push_back(test::random_in_box(random, model.box));
   }
