@@ -22,7 +22,7 @@ Mesh.MeshSizeMax = 0.5;
 Mesh.SaveAll = 1;
 """
 FUNCTION = ('fixed source Physical Surface{"Flügel links; außen 翼"} '
-            "attach Physical Volume{Luft ringsum} size 0.1 growth 1.3 limit 0.5 name Größe 1")
+            'attach Physical Volume{Luft ringsum} size 0.1 growth 1.3 limit 0.5 name "Größe 1"')
 
 
 @pytest.fixture
