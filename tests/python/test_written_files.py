@@ -18,7 +18,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BALL = """
 SetFactory("OpenCASCADE");
 Sphere(1) = {0, 0, 0, 1};
-Mesh.MeshSizeMax = 0.05;
+Mesh.MeshSizeMax = 0.08;
 """
 FIXED = "fixed source Surface{1} attach Volume{1} size 0.05 growth 1.2 limit 0.5"
 PRECIOUS = "of before"
