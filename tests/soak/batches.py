@@ -2,7 +2,7 @@
 
 import json
 import os
-import select
+import signal
 import subprocess
 import sys
 import tempfile
@@ -13,64 +13,57 @@ WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "worker.py")
 class Child:
     """A worker with some seeds to do."""
 
-    def __init__(self, mode, seeds):
+    def __init__(self, mode, seeds, limit):
         self.errors = tempfile.TemporaryFile()
         read, write = os.pipe()
         self.process = subprocess.Popen(
-            [sys.executable, WORKER, mode, str(write)] + [str(s) for s in seeds],
+            [sys.executable, WORKER, mode] + [str(n) for n in (write, limit, *seeds)],
             pass_fds=[write], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=self.errors)
         os.close(write)
         self.lines = os.fdopen(read)
 
-    def next_line(self, seconds):
-        """The next message; None at the end, "timeout" if there is none for so long."""
-        ready, _, _ = select.select([self.lines], [], [], seconds)
-        if not ready:
-            return "timeout"
-        line = self.lines.readline()
-        return json.loads(line) if line.endswith("\n") else None
+    def messages(self):
+        """What it tells, to its end; a line that it could not finish is none."""
+        for line in self.lines:
+            if line.endswith("\n"):
+                yield json.loads(line)
 
     def end(self):
         """Exit code and the end of what it wrote to its standard error."""
-        if self.process.poll() is None:
-            try:
-                self.process.wait(timeout=5)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
         code = self.process.wait()
+        self.lines.close()
         self.errors.seek(0)
         return code, self.errors.read()[-1500:].decode(errors="replace")
 
 
-def run_batch(mode, seeds, timeout):
+def run_batch(mode, seeds, limit):
     """Yields the results of the seeds, in their order."""
     seeds = list(seeds)
     while seeds:
-        child = Child(mode, seeds)
-        while True:
-            message = child.next_line(timeout)
-            if message is None or message == "timeout":
-                break
-            if "start" not in message:
+        child = Child(mode, seeds, limit)
+        asked = None
+        for message in child.messages():
+            asked = message.get("asked", asked)
+            if "status" in message:
                 seeds.remove(message["seed"])
                 yield message
-        if message == "timeout":
-            child.process.kill()
         code, errors = child.end()
         if seeds:  # the first one ended the process
-            status = "timeout" if message == "timeout" else "crash"
+            late = code in (-signal.SIGXCPU, -signal.SIGALRM)
+            status = "gmsh" if asked != seeds[0] else "timeout" if late else "crash"
             yield {"seed": seeds.pop(0), "status": status,
-                   "message": "no end after %g s" % timeout if status == "timeout"
+                   "message": "no end after %d s" % limit if late
                    else "exit code %d: %s" % (code, errors)}
 
 
-def run(seeds, timeout=300, batch=25):
-    """Results of meshing by the library, with a new process for each `batch` of models. Those that
-    fail have those without it beside them, as "callback" and "plain"."""
+def run(seeds, limit=40, batch=25):
+    """Results of meshing by the library, with a new process for each `batch` of models and `limit`
+    seconds of the processor for a model. Those that fail have those without it beside them, as
+    "callback" and "plain"; these are several tries."""
     for first in range(0, len(seeds), batch):
-        for result in run_batch("field", seeds[first:first + batch], timeout):
+        for result in run_batch("field", seeds[first:first + batch], limit):
             if result["status"] in ("error", "crash", "timeout"):
                 for mode in ("callback", "plain"):
-                    result[mode], = run_batch(mode, [result["seed"]], timeout)
+                    result[mode], = run_batch(mode, [result["seed"]], 3 * limit)
             yield result

@@ -10,6 +10,7 @@ import numpy as np
 from meshes import (boundary, corner_tags, corners, element_count, has_elements, signed_volumes,
                     snapshot)
 
+FLAT = 1e-9  # volume of a tetrahedron over the cube of an edge that is none
 MANY = 1000  # tetrahedra from which on the sizes of a volume are judged
 
 
@@ -56,6 +57,18 @@ def sides_of(elements):
     return np.unique(sides, axis=0, return_counts=True)
 
 
+def relative_volumes(volume):
+    """Signed volumes of tetrahedra over the cube of their first edges."""
+    first = corners(volume, "Tetrahedron")[:, :2]
+    return signed_volumes(volume) / np.linalg.norm(first[:, 1] - first[:, 0], axis=1) ** 3
+
+
+def flat_tetrahedra():
+    """Gmsh leaves some in corners of less than an element, and warns of them as ill-shaped."""
+    return sum(int((relative_volumes(v) < FLAT).sum()) for v in gmsh.model.getEntities(3)
+               if has_elements(v))
+
+
 def invalid():
     """What is wrong with the volumes' meshes, in words."""
     found = []
@@ -63,7 +76,7 @@ def invalid():
         if not has_elements(volume):
             found.append("%s has no mesh" % (volume,))
             continue
-        if signed_volumes(volume).min() <= 0:
+        if relative_volumes(volume).min() < -FLAT:
             found.append("%s has inverted tetrahedra" % (volume,))
         sides, counts = sides_of(corner_tags(volume, "Tetrahedron"))
         on_faces = np.concatenate([corner_tags(f, "Triangle") for f in boundary([volume])])

@@ -8,7 +8,7 @@ import meshgrow
 import random_meshes
 from random_functions import FunctionMaker, draw_settings
 from random_shapes import make_shapes
-from meshes import has_elements
+from meshes import has_elements, options
 
 
 class GmshFailure(Exception):
@@ -53,10 +53,12 @@ class SoakModel:
         return min(float(text.split(" limit ")[1]) for text in self.functions)
 
     def generate_by_callback(self, factor):
-        """In Gmsh's own order, with the sizes of the field times a factor."""
+        """In Gmsh's own order, with the sizes of the field times a factor, and no others."""
         field = self.make_field()
         field.refresh()
-        self._generate(lambda *place: factor * field(*place))
+        limit = self.limit()
+        with options(Mesh_MeshSizeExtendFromBoundary=0):
+            self._generate(lambda dim, tag, x, y, z, *_: factor * field(dim, tag, x, y, z, limit))
 
     def generate_without(self, factor):
         """By plain Gmsh, with sizes alike."""

@@ -17,7 +17,7 @@ def reason(failure):
     if status == "mistake":
         return "mistake in the soak itself", False
     alone = [failure[mode] for mode in ("plain", "callback") if mode in failure]
-    if any(other["status"] != "meshed" for other in alone):
+    if any(other["status"] in ("gmsh", "crash", status) for other in alone):
         return "Gmsh fails in its own order as well, with sizes alike", True
     if status == "error" and message.startswith("Gmsh gave "):
         return "Gmsh has to split a curve that has a mesh: refused", True

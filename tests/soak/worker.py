@@ -1,12 +1,15 @@
-"""Meshes random models in one process and tells of each: python worker.py MODE PIPE SEED...
+"""Meshes random models in one process and tells of each: python worker.py MODE PIPE LIMIT SEED...
 
 MODE is "field" (meshed by SizeField.generate), "callback" (in Gmsh's own order, by the sizes of the
 field) or "plain" (Gmsh alone, with sizes alike). To the file descriptor PIPE go lines of JSON:
-{"start": seed}, then the result. What crashes is known by its start."""
+{"asked": seed} as the library is asked, then the result. A model may take LIMIT seconds of the
+processor (not of the clock: that would depend on what else runs), then SIGXCPU ends it."""
 
 import ctypes
 import json
 import os
+import resource
+import signal
 import sys
 import time
 import traceback
@@ -15,7 +18,7 @@ sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 
 import gmsh  # noqa: E402
 
-from checks import Before, invalid, measure_volumes  # noqa: E402
+from checks import Before, flat_tetrahedra, invalid, measure_volumes  # noqa: E402
 from meshes import closure, element_count, options  # noqa: E402
 from soak_model import GmshFailure, SoakModel  # noqa: E402
 
@@ -77,13 +80,14 @@ def mesh_by_field(model):
         result["same_faces"] = fails_on_same_faces()
     if result["status"] == "meshed":
         result["invalid"] = invalid()
+        result["flat"] = flat_tetrahedra()
         result["tetrahedra"] = tetrahedra()
         result["seconds_of"] = field.statistics()["seconds"]
         result["volumes"] = measure_volumes(field, closure(before.meshes))
     return result
 
 
-def run(mode, seed):
+def run(mode, seed, tell=lambda line: None):
     start = time.monotonic()
     gmsh.initialize(readConfigFiles=False)
     gmsh.option.setNumber("General.Terminal", 0)
@@ -94,6 +98,7 @@ def run(mode, seed):
         words = model.words
         model.set_options()
         model.mesh_beforehand()
+        tell({"asked": seed})
         result = {"field": mesh_by_field,
                   "callback": lambda model: mesh_without(model, model.generate_by_callback),
                   "plain": lambda model: mesh_without(model, model.generate_without)}[mode](model)
@@ -106,13 +111,18 @@ def run(mode, seed):
 
 
 def main():
-    mode, pipe, seeds = sys.argv[1], int(sys.argv[2]), [int(s) for s in sys.argv[3:]]
+    mode, (pipe, limit, *seeds) = sys.argv[1], map(int, sys.argv[2:])
     with os.fdopen(pipe, "w", buffering=1) as lines:
+        def tell(line):
+            lines.write(json.dumps(line) + "\n")
         for seed in seeds:
-            lines.write(json.dumps({"start": seed}) + "\n")
-            result = run(mode, seed)
+            used = resource.getrusage(resource.RUSAGE_SELF)
+            limit_time = int(used.ru_utime + used.ru_stime) + limit
+            resource.setrlimit(resource.RLIMIT_CPU, (limit_time, resource.RLIM_INFINITY))
+            signal.alarm(100 * limit)  # if it waits for something
+            result = run(mode, seed, tell)
             result["resident"] = resident_megabytes()
-            lines.write(json.dumps(result) + "\n")
+            tell(result)
 
 
 if __name__ == "__main__":
