@@ -8,7 +8,6 @@ import pytest
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "soak"))
 
 import batches  # noqa: E402
-import memory  # noqa: E402
 import summary  # noqa: E402
 
 SEEDS = range(1, 26)
@@ -29,6 +28,6 @@ def test_random_models_are_meshed_and_all_that_was_there_is_kept(results):
 def test_sizes_of_random_models_grow_smoothly_unless_their_sources_jump(results):
     volumes = summary.judged(results)
     assert len(volumes) >= 15
-    unexplained = [(seed, v["volume"]) for seed, v in volumes
-                   if summary.is_steep(v) and summary.cause(v) == "none found"]
+    unexplained = [(r["seed"], v["volume"]) for r, v in volumes
+                   if summary.is_steep(v) and summary.cause(v, r["words"]) == summary.NONE_FOUND]
     assert not unexplained, summary.summary(results)

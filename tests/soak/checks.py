@@ -7,10 +7,11 @@ import gmsh
 import meshgrow
 import numpy as np
 
-from meshes import (boundary, corner_tags, corners, element_count, has_elements, signed_volumes,
-                    snapshot)
+from meshes import (boundary, corner_tags, corners, element_count, has_elements, node_positions,
+                    signed_volumes, snapshot)
 
 FLAT = 1e-9  # volume of a tetrahedron over the cube of an edge that is none
+STEEP = 1.5  # the most that 99 % of neighbours may differ by
 MANY = 1000  # tetrahedra from which on the sizes of a volume are judged
 
 
@@ -104,18 +105,32 @@ def size_ratios(volume):
     return ratios, np.concatenate((tags[a], tags[b]), axis=1)
 
 
+def face_edges(volume, field):
+    """Edges of the triangles around a volume: nodes (n, 2), and length over the size that the
+    volume's functions ask for there."""
+    triangles = np.concatenate([corner_tags(f, "Triangle") for f in boundary([volume])])
+    edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    a, b = np.moveaxis(node_positions()[edges], 1, 0)
+    return edges, np.linalg.norm(b - a, axis=1) / field.size(*volume, (a + b) / 2)
+
+
 def causes(volume, premeshed, field):
-    """Numbers that tell why sizes jump in a volume."""
+    """Numbers that tell why sizes jump in a volume: how many pairs of neighbours do, and which part
+    of these, and of all, is at nodes of the mesh from before, of too short and of too long edges
+    on faces."""
     ratios, nodes = size_ratios(volume)
-    bad = ratios > 1.5
+    bad = ratios > STEEP
     faces = [f for f in boundary([volume]) if f in premeshed]
-    on_premeshed = np.unique([n for f in faces for n in corner_tags(f, "Triangle").ravel()])
-    result = {"bad": float(bad.mean()),
-              "bad_at_premeshed": float(np.isin(nodes[bad], on_premeshed).any(axis=1).mean()),
-              "all_at_premeshed": float(np.isin(nodes, on_premeshed).any(axis=1).mean()),
-              "on_faces": meshgrow.report(2, boundary([volume]), field)}
+    edges, lengths = face_edges(volume, field)
+    places = {"premeshed": [n for f in faces for n in corner_tags(f, "Triangle").ravel()],
+              "shorter": edges[lengths < 0.6].ravel(), "longer": edges[lengths > 1.7].ravel()}
+    result = {"pairs": len(ratios), "bad": int(bad.sum()),
+              "faces": meshgrow.report(2, boundary([volume]))}
+    for place, tags in places.items():
+        there = np.isin(nodes, np.unique(tags)).any(axis=1)
+        result[place] = {"of_bad": float(there[bad].mean()), "of_all": float(there.mean())}
     if faces:
-        result["on_premeshed"] = meshgrow.report(2, faces, field)
+        result["premeshed"].update(meshgrow.report(2, faces))
     return result
 
 
@@ -129,7 +144,7 @@ def measure_volumes(field, premeshed):
         if report["length_median"] is None:
             continue  # nothing acts on it
         entry = {"volume": volume[1], "tetrahedra": element_count(volume), "report": report}
-        if report["ratio_99"] and report["ratio_99"] > 1.5 and entry["tetrahedra"] > MANY:
+        if report["ratio_99"] and report["ratio_99"] > STEEP and entry["tetrahedra"] > MANY:
             entry["causes"] = causes(volume, premeshed, field)
         result.append(entry)
     return result

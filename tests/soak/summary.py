@@ -2,11 +2,13 @@
 
 import collections
 import json
+import re
 import sys
 
-from checks import MANY
+from checks import MANY, STEEP
 
-STEEP = 1.5  # the most that 99 % of neighbours may differ by
+FAST = 1.4  # growth rate with which neighbours differ by about STEEP, as Gmsh's sizes scatter
+NONE_FOUND = "none found"
 
 
 def reason(failure):
@@ -26,29 +28,37 @@ def reason(failure):
     return status, False
 
 
-def cause(volume):
+def fastest_growth(volume, words):
+    """The largest growth rate of the functions attached to a volume."""
+    rates = [1.0]
+    for text in words:
+        attached = re.search(r" attach .*Volume\{([0-9,]+)\}.* growth ([0-9.]+)", str(text))
+        if attached and str(volume) in attached[1].split(","):
+            rates.append(float(attached[2]))
+    return max(rates)
+
+
+def cause(volume, words):
     """Why sizes jump in a volume, as its measurements tell."""
-    facts, report = volume["causes"], volume["report"]
-    faces, before = facts["on_faces"], facts.get("on_premeshed")
-    if before and facts["bad_at_premeshed"] > 0.5:
-        if before["ratio_99"] > 1.4 or before["ratio_max"] > 1.8:
-            return "the mesh from before jumps itself"
-        if (before["length_share_over_2"] or 0) > 0.05:
-            return "the mesh from before is coarser than asked for there"
-        if (before["length_median"] or 1) < 0.7:
-            return "the mesh from before is finer than asked for there, and no source"
-    if (faces["length_median"] or 1) < 0.75 or (report["length_median"] or 1) < 0.75:
-        return "faces are finer than its functions ask for, by those of neighbours"
-    if (faces["length_share_over_2"] or 0) > 0.05:
-        return "faces are coarser than asked for"
-    if volume["tetrahedra"] < 2.5 * faces["elements"]:
+    facts = volume["causes"]
+    before = facts["premeshed"]
+    if before["of_bad"] > 0.5 and (before.get("ratio_99") or 1) > 1.4:
+        return "the mesh from before jumps itself"
+    for place, text in (("longer", "faces are coarser than asked for: meshed before, or flat parts"),
+                        ("shorter", "faces are finer than the volume's functions ask for")):
+        there = facts[place]
+        if there["of_bad"] > max(0.5, there["of_all"] + 0.2):
+            return text
+    if fastest_growth(volume["volume"], words) >= FAST:
+        return "a growth rate of %g or more is asked for" % FAST
+    if volume["tetrahedra"] < 2.5 * facts["faces"]["elements"]:
         return "thin: hardly more tetrahedra than triangles around"
-    return "none found"
+    return NONE_FOUND
 
 
 def judged(results):
-    """Attached volumes with many tetrahedra: (seed, volume)."""
-    return [(r["seed"], v) for r in results for v in r.get("volumes", ())
+    """Attached volumes with many tetrahedra: (result, volume)."""
+    return [(r, v) for r in results for v in r.get("volumes", ())
             if v["tetrahedra"] > MANY]
 
 
@@ -79,7 +89,8 @@ def summary(results):
     meshed = [r for r in results if r["status"] == "meshed"]
     failed = [r for r in results if r["status"] != "meshed"]
     volumes = judged(results)
-    steep = [(seed, v) for seed, v in volumes if is_steep(v)]
+    steep = [(r, v) for r, v in volumes if is_steep(v)]
+    slow = [v for r, v in volumes if fastest_growth(v["volume"], r["words"]) < FAST]
     kept = [r for r in results if r.get("premeshed")]
     changed = [r for r in kept if any(d.startswith(("node", "coord", "elem"))
                                       for d in r["differences"])]
@@ -97,13 +108,15 @@ def summary(results):
                                                     tetrahedra[-1]) if meshed else "-"),
         ("attached volumes of > %d tetrahedra" % MANY, len(volumes)),
         ("  99 %% ratio <= %g" % STEEP, "%d (%.2f %%)" % (
-            len(volumes) - len(steep), 100 - 100 * len(steep) / max(1, len(volumes))))]
+            len(volumes) - len(steep), 100 - 100 * len(steep) / max(1, len(volumes)))),
+        ("  of those with growth < %g" % FAST, "%d of %d (%.2f %%)" % (
+            sum(not is_steep(v) for v in slow), len(slow),
+            100 * sum(not is_steep(v) for v in slow) / max(1, len(slow))))]
     lines = ["%-46s %s" % row for row in rows]
     for text, seeds in grouped((reason(r)[0], r["seed"]) for r in failed):
         lines.append("not meshed, %s: %d: %s" % (text, len(seeds), seeds))
-    for text, places in grouped((cause(v), "%d/%d %.2f" % (seed, v["volume"],
-                                                           v["report"]["ratio_99"]))
-                                for seed, v in steep):
+    for text, places in grouped((cause(v, r["words"]), "%d/%d %.2f" % (
+            r["seed"], v["volume"], v["report"]["ratio_99"])) for r, v in steep):
         lines.append("ratio, %s: %d: seed/volume %s" % (text, len(places), ", ".join(places)))
     return "\n".join(lines + broken_promises(results))
 
