@@ -1,4 +1,4 @@
-"""Runs models in child processes: what crashes or hangs is one model's result and stops no other."""
+"""Runs models in child processes: what crashes or hangs is the result of one, and stops nothing."""
 
 import json
 import os

@@ -109,7 +109,8 @@ def face_edges(volume, field):
     """Edges of the triangles around a volume: nodes (n, 2), and length over the size that the
     volume's functions ask for there."""
     triangles = np.concatenate([corner_tags(f, "Triangle") for f in boundary([volume])])
-    edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges = np.unique(edges, axis=0)
     a, b = np.moveaxis(node_positions()[edges], 1, 0)
     return edges, np.linalg.norm(b - a, axis=1) / field.size(*volume, (a + b) / 2)
 

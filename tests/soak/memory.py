@@ -1,7 +1,7 @@
 """Memory that stays behind: python memory.py [MODELS] [ROUNDS] [FIRST_SEED]
 
 The same models again and again in one process, for each of four ways; a line tells the memory (heap
-in use, and resident) that each model leaves behind, from the third round on: Gmsh has leaks of its own.
+in use, and resident) that each model leaves behind, from the third round on. Gmsh leaks by itself.
 
 nothing  the geometry and its mesh beforehand, no field
 sizes    a field beside that: grids, sizes, probes, its text; no meshing

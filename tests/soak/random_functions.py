@@ -67,7 +67,8 @@ class FunctionMaker:
         dim = choose(self.draw, [(0, 2), (1, 3), (2, 4), (3, 1)])
         if dim == 3:
             sources = [self.draw.choice(self.volumes)]
-            size = (10 * gmsh.model.occ.getMass(*sources[0]) / self.draw.randint(300, 2000))**(1 / 3)
+            count = self.draw.randint(300, 2000)
+            size = (10 * gmsh.model.occ.getMass(*sources[0]) / count) ** (1 / 3)
         elif dim == 2:
             sources = some(self.draw, self.faces, 2)
             size = face_size(sources, self.draw.randint(40, 300))

@@ -44,7 +44,7 @@ def cause(volume, words):
     before = facts["premeshed"]
     if before["of_bad"] > 0.5 and (before.get("ratio_99") or 1) > 1.4:
         return "the mesh from before jumps itself"
-    for place, text in (("longer", "faces are coarser than asked for: meshed before, or flat parts"),
+    for place, text in (("longer", "faces are coarser than the volume's functions ask for"),
                         ("shorter", "faces are finer than the volume's functions ask for")):
         there = facts[place]
         if there["of_bad"] > max(0.5, there["of_all"] + 0.2):
