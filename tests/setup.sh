@@ -18,7 +18,7 @@ fail() {
 # tests (sanitizers, fuzzing, clang-tidy, coverage), for who sets with_checks.
 extra_packages=()
 [ -z "${with_benchmarks:-}" ] || extra_packages+=(libcgal-dev libembree-dev libbenchmark-dev)
-[ -z "${with_checks:-}" ] || extra_packages+=(clang clang-tidy llvm libomp-dev gcovr)
+[ -z "${with_checks:-}" ] || extra_packages+=(clang clang-tidy llvm libomp-dev python3-coverage)
 
 install_packages() {
   local wanted=(
