@@ -19,6 +19,22 @@ constexpr float good_enough_for_float = 8e-6f;
 /// In units of the tree. Squares of what is farther may not be finite in float.
 constexpr double farthest_for_float = 1e15;
 
+/// Of start sizes, in units of the tree. Next to a facet so far away that others are smaller than
+/// this, float cannot tell those from nothing.
+constexpr float smallest_for_float = 1e-30f;
+
+/// Of start sizes over slopes, in units of the tree: places of double are not better.
+constexpr double smallest_extent = 1e-10;
+
+bool float_suffices(const StoredTree& tree) {
+  if (tree.nodes.empty() || tree.largest_slope >= 1.0) {
+    return true;  // a tree of distances has no start sizes
+  }
+  const simd::WideNode& root = tree.nodes[0];
+  const float smallest = *std::min_element(root.start_size, root.start_size + simd::lanes);
+  return smallest >= smallest_for_float && smallest >= smallest_extent * tree.largest_slope;
+}
+
 }  // namespace
 
 FacetTree::FacetTree(SizedFacets facets, int threads) {
@@ -189,7 +205,8 @@ void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
 }
 
 bool FacetTree::is_near_enough_for_float(const Vec3& p) const {
-  return (p - stored_.centre).cwiseAbs().maxCoeff() < farthest_for_float * stored_.unit;
+  return float_suffices(stored_) &&
+         (p - stored_.centre).cwiseAbs().maxCoeff() < farthest_for_float * stored_.unit;
 }
 
 double FacetTree::reference_size(const Vec3& p, double upper_bound) const {

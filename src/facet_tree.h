@@ -142,7 +142,8 @@ class FacetTree {
   double unit() const { return stored_.unit; }
   const Vec3& centre() const { return stored_.centre; }
   double largest_slope() const { return stored_.largest_slope; }
-  /// Farther away, float cannot rule anything out, and only `size` and `sizes` may be asked.
+  /// Farther away, or with facets so far apart that the smallest are nothing in float beside that,
+  /// float cannot rule anything out, and only `size` and `sizes` may be asked.
   bool is_near_enough_for_float(const Vec3& p) const;
 
  private:

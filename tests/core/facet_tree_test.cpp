@@ -300,6 +300,30 @@ TEST(FacetTree, StartSizesBeyondAllMeasureLeaveTheOthersAsTheyAre) {
   }
 }
 
+TEST(FacetTree, AFacetBeyondAllMeasureLeavesTheOthersAsTheyAre) {
+  // As when one node of a mesh is garbage: in units of all facets the others are nothing in float.
+  for (const double far : {1e9, 1e13, 1e17, 1e30, 1e100, 1e300}) {
+    SCOPED_TRACE(far);
+    SizedFacets facets;
+    for (int i = 0; i < 40; ++i) {
+      facets.push_back({Facet::point({0.25 * (i % 4), 0.25 * (i / 4), 0.0}), 0.1 + 0.01 * i, 0.2});
+    }
+    facets.push_back({Facet::triangle({0, far, 0}, {0, 1, 0}, {1, 0, -far}), 0.2, 0.2});
+    const FacetTree tree(facets);
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 p(0.07 * (i % 13), 0.11 * (i % 7), 0.05 * i);
+      double expected = FacetTree::infinity;
+      for (const SizedFacet& facet : facets) {
+        expected = std::min(expected, facet.size_at(p));
+      }
+      ASSERT_NEAR(tree.size(p), expected, 1e-12 * expected) << i;
+      double size = 0.0;
+      tree.sizes(&p, 1, FacetTree::infinity, &size);
+      ASSERT_EQ(size, tree.size(p));
+    }
+  }
+}
+
 TEST(FacetTree, FacetsAsShortAsNothingArePoints) {
   for (const double length : {1e-80, 1e-100, 1e-155, 1e-161, 1e-163}) {
     constexpr unsigned seed = 630;

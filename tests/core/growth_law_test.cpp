@@ -31,6 +31,13 @@ TEST(GrowthLaw, LayersGrowByTheRate) {
   }
 }
 
+TEST(GrowthLaw, SlopesAreBelowOneWhateverTheRate) {
+  for (const double rate : {1.0, 1.2, 1e9, 1e16, 1e17, 1e300}) {
+    EXPECT_GE(growth_slope(rate), 0.0) << rate;
+    EXPECT_LT(growth_slope(rate), 1.0) << rate;
+  }
+}
+
 TEST(GrowthLaw, RateOneKeepsTheSize) {
   EXPECT_EQ(growth_slope(1.0), 0.0);
   EXPECT_EQ(grown_size(0.7, 1.0, 1e9), 0.7);

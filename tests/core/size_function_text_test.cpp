@@ -406,10 +406,11 @@ TEST(SizeFunctionText, NamesAreKept) {
   EXPECT_EQ(size_function_text(function), rest + " name \"in ner\"");
   function.name = "12";
   EXPECT_EQ(size_function_text(function), rest);
-  const std::string wanted = "a name that is not a number";
+  const std::string wanted = "a name that is not a number and has no quotes";
   expect_error_at(rest + " name ^12", wanted);
   expect_error_at(rest + " name ^\"\"", wanted);
   expect_error_at(rest + " name ^\"a", wanted);
+  expect_error_at(rest + " name ^a\"b", wanted);
   expect_error_at(rest + " name^", wanted);
 }
 

@@ -78,7 +78,8 @@ Model read_model(InputNumbers& input) {
   const unsigned choice = input.byte();
   model.tolerance = tolerances[choice % 4];
   if ((choice & 4) != 0) {
-    model.box = Box(input.point(), input.point());
+    const Vec3 corner = input.point();
+    model.box = Box(corner, input.point());
   }
   for (unsigned i = 0; i < choice >> 6; ++i) {
     model.points.push_back(input.point());
@@ -149,7 +150,7 @@ std::vector<Vec3> interesting_points(const Model& model, const FacetTree& tree) 
     points.push_back(model.box.max());
   }
   Vec3 before = Vec3::Zero();
-  for (std::size_t i = 0; i < tree.facets().size(); i += 1 + tree.facets().size() / 6) {
+  for (std::size_t i = 0; i < tree.facets().size(); i += 1 + tree.facets().size() / 4) {
     const Vec3& corner = tree.facets()[i].facet.corners[i % 3];
     points.push_back(corner);
     points.emplace_back(0.5 * corner + 0.5 * before);
