@@ -202,6 +202,50 @@ TEST_F(Callback, FieldsMayComeAndGoBetweenCalls) {
   }
 }
 
+// ==== Who would wait for itself
+
+/// What a call told that came from within the field's own work.
+struct Told {
+  meshgrow_field* field;
+  int result = -1;
+  std::string error;
+
+  void keep(int told) {
+    result = told;
+    error = meshgrow_last_error();
+  }
+};
+
+TEST_F(Callback, OwnSizesThatRefreshGetAnError) {
+  const Field field = fixed_field();
+  Told told{field.get()};
+  const auto refreshing = [](int, int, double, double, double, double so_far, void* data) {
+    auto* own = static_cast<Told*>(data);
+    own->keep(meshgrow_field_refresh(own->field));
+    return so_far;
+  };
+  ASSERT_EQ(meshgrow_field_combine(field.get(), refreshing, &told), 0);
+  ask(field.get(), Question::callback);
+  EXPECT_EQ(told.result, 1);
+  EXPECT_NE(told.error.find("your own sizes"), std::string::npos) << told.error;
+}
+
+TEST_F(Callback, AListenerThatAsksDuringARefreshGetsAnError) {
+  const Field field = fixed_field();
+  Told told{field.get()};
+  const auto asking = [](const char*, void* data) {
+    auto* own = static_cast<Told*>(data);
+    const std::array<double, 3> p = {0.5, 0.5, 0.5};
+    double size = 0.0;
+    own->keep(meshgrow_field_size(own->field, 3, volume, p.data(), 1, &size));
+    return 0;
+  };
+  ASSERT_EQ(meshgrow_field_set_progress(field.get(), asking, &told), 0);
+  EXPECT_EQ(meshgrow_field_refresh(field.get()), 0) << meshgrow_last_error();
+  EXPECT_EQ(told.result, 1);
+  EXPECT_NE(told.error.find("listener"), std::string::npos) << told.error;
+}
+
 // ==== Gmsh's own threads
 
 /// Own sizes that ask the field as well, from the threads of Gmsh.
