@@ -25,7 +25,8 @@ int interval_count(const Entity& curve) {
 /// Searches the factor on the sizes of one curve that gives it the wanted number of intervals.
 class FactorSearch {
  public:
-  FactorSearch(int wanted, int count) : wanted_(wanted), first_count_(count) { next(count); }
+  /// `count`: as it was meshed by sizes that a factor of 1 gives but for rounding.
+  FactorSearch(int wanted, int count) : wanted_(wanted), first_count_(count) { rescale(count); }
 
   double factor() const { return factor_; }
   int wanted() const { return wanted_; }
@@ -40,12 +41,14 @@ class FactorSearch {
     if (too_small_ > 0.0 && too_large_ > 0.0) {
       factor_ = std::sqrt(too_small_ * too_large_);
     } else {
-      // Gmsh rounds up: a curve of n intervals asks for n − 1/2 on average.
-      factor_ *= (count - 0.5) / (wanted_ - 0.5);
+      rescale(count);
     }
   }
 
  private:
+  /// Gmsh rounds up: a curve of n intervals asks for n − 1/2 on average.
+  void rescale(int count) { factor_ *= (count - 0.5) / (wanted_ - 0.5); }
+
   int wanted_;
   int first_count_;
   double factor_ = 1.0;

@@ -232,3 +232,16 @@ def test_odd_numbers_of_gmsh_itself_beside_quads_may_be_changed():
         counts = [element_count((1, curve)) for curve in (bottoms[i], tops[i], across[i])]
         assert counts[0] == counts[1]
         assert element_count((2, face)) == counts[0] * counts[2]
+
+
+def test_a_premeshed_side_rules_sides_that_gmsh_makes_finer_than_the_field():
+    """Gmsh's own size, a tenth of the model's diagonal, is below what the field asks for there."""
+    model = models.square()
+    premesh([model.bottom], 0.2)
+    count = element_count(model.bottom)  # 5; 4.8 lets no size exceed its own
+    gmsh.model.mesh.setTransfiniteSurface(model.face[1])
+    field = meshgrow.SizeField()
+    field.add_mesh([model.bottom], [model.face], 1.2, 0.5)
+    field.generate(2)
+    assert element_count(model.bottom) == element_count(model.top) == count
+    assert element_count(model.left) == element_count(model.right)
