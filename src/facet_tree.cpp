@@ -23,16 +23,12 @@ constexpr double farthest_for_float = 1e15;
 /// this, float cannot tell those from nothing.
 constexpr float smallest_for_float = 1e-30f;
 
-/// Of start sizes over slopes, in units of the tree: places of double are not better.
-constexpr double smallest_extent = 1e-10;
-
 bool float_suffices(const StoredTree& tree) {
   if (tree.nodes.empty() || tree.largest_slope >= 1.0) {
     return true;  // a tree of distances has no start sizes
   }
   const simd::WideNode& root = tree.nodes[0];
-  const float smallest = *std::min_element(root.start_size, root.start_size + simd::lanes);
-  return smallest >= smallest_for_float && smallest >= smallest_extent * tree.largest_slope;
+  return *std::min_element(root.start_size, root.start_size + simd::lanes) >= smallest_for_float;
 }
 
 }  // namespace

@@ -341,8 +341,9 @@ Summary TreeBuilder::fill_block(std::uint32_t index, std::uint32_t first, std::u
   summary.oriented = areas > 1e-100 && normal.squaredNorm() > 0.9 * areas * areas
                          ? oriented_box(corners.data(), corner_count, normal, summary.box)
                          : oriented_box(corners.data(), corner_count, summary.spread, summary.box);
-  // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times.
-  block.place_error = static_cast<float>(1e-6 * std::sqrt(reach) + 1e-17);
+  // Rounding to float moves corners and turns frames by 6e-8 of the reach at most, a few times;
+  // places relative to the centre are rounded to double.
+  block.place_error = static_cast<float>(1e-6 * std::sqrt(reach) + 4e-16);
   return summary;
 }
 

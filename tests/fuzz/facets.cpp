@@ -17,7 +17,7 @@ const Entity volume = {3, 1};
 const Entity faces[] = {{2, 1}, {2, 2}};
 
 constexpr std::size_t most_facets = 40;
-constexpr std::size_t most_walls = 8;
+constexpr std::size_t most_walls = 4;
 
 /// Of grids, relative to the size: what is proven in float.
 constexpr double rounding = 1e-5;

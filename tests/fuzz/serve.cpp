@@ -28,7 +28,7 @@ SizeField make_field() {
   made.add(function);
   FacetedSource source;
   source.entity = {2, 1};
-  source.triangles = test::graded_sphere(100, 20.0);
+  source.triangles = test::graded_sphere(12, 4.0);
   made.set_sources(0, {source});
   made.build_trees();
   return made;
