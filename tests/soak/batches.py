@@ -57,13 +57,18 @@ def run_batch(mode, seeds, limit):
                    else "exit code %d: %s" % (code, errors)}
 
 
-def run(seeds, limit=40, batch=25):
+def run(seeds, limit=20, batch=25):
     """Results of meshing by the library, with a new process for each `batch` of models and `limit`
-    seconds of the processor for a model. Those that fail have those without it beside them, as
-    "callback" and "plain"; these are several tries."""
+    seconds of the processor for a model."""
     for first in range(0, len(seeds), batch):
-        for result in run_batch("field", seeds[first:first + batch], limit):
-            if result["status"] in ("error", "crash", "timeout"):
-                for mode in ("callback", "plain"):
-                    result[mode], = run_batch(mode, [result["seed"]], 3 * limit)
-            yield result
+        yield from run_batch("field", seeds[first:first + batch], limit)
+
+
+def failed_in_the_library(result):
+    return result["status"] in ("error", "crash", "timeout")
+
+
+def without_the_library(result, limit=20):
+    """A failed result with those of Gmsh alone beside it."""
+    return dict(result, **{mode: next(run_batch(mode, [result["seed"]], limit))
+                           for mode in ("callback", "plain")})

@@ -122,9 +122,10 @@ def summary(results):
 
 
 def read(path):
-    """Results, the last one of each seed."""
+    """Results, the last one of each seed; a line that is not complete is none."""
     with open(path) as file:
-        return list({r["seed"]: r for r in map(json.loads, file)}.values())
+        lines = [json.loads(line) for line in file if line.endswith("\n")]
+    return list({r["seed"]: r for r in lines}.values())
 
 
 def main():
