@@ -58,7 +58,7 @@ class SoakModel:
         field.refresh()
         limit = self.limit()
         with options(Mesh_MeshSizeExtendFromBoundary=0):
-            self._generate(lambda dim, tag, x, y, z, *_: factor * field(dim, tag, x, y, z, limit))
+            self._generate(lambda dim, tag, x, y, z: factor * field(dim, tag, x, y, z, limit))
 
     def generate_without(self, factor):
         """By plain Gmsh, with sizes alike."""
@@ -71,7 +71,8 @@ class SoakModel:
         known_size = self.premesh[2] if self.premesh else None
 
         def callback(dim, tag, x, y, z, *lc):
-            return known_size(x, y, z) if (dim, tag) in known else size_at(dim, tag, x, y, z, *lc)
+            size = known_size(x, y, z) if (dim, tag) in known else size_at(dim, tag, x, y, z)
+            return min((size, *lc))  # not above Gmsh's own, as from curvature
         gmsh.model.mesh.setSizeCallback(callback)
         try:
             gmsh.model.mesh.generate(3)
