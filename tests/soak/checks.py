@@ -81,7 +81,8 @@ def invalid():
             found.append("%s has inverted tetrahedra" % (volume,))
         sides, counts = sides_of(corner_tags(volume, "Tetrahedron"))
         on_faces = np.concatenate([corner_tags(f, "Triangle") for f in boundary([volume])])
-        on_faces = np.unique(np.sort(on_faces, axis=1), axis=0)
+        on_faces, times = np.unique(np.sort(on_faces, axis=1), axis=0, return_counts=True)
+        on_faces = on_faces[times == 1]  # Gmsh folds some flat at the tips of cones
         if counts.max() > 2 or not np.array_equal(sides[counts == 1], on_faces):
             found.append("%s does not end at the meshes of its faces" % (volume,))
     tags = gmsh.model.mesh.getNodes()[0]

@@ -5,7 +5,7 @@ in use, and resident) that each model leaves behind, from the third round on. Gm
 
 nothing  the geometry and its mesh beforehand, no field
 sizes    a field beside that: grids, sizes, probes, its text; no meshing
-passes   Gmsh alone, in as many passes as the field would take
+gmsh     Gmsh alone
 field    SizeField.generate
 """
 
@@ -17,7 +17,6 @@ import sys
 import gmsh
 import numpy as np
 
-from meshes import options
 from soak_model import SoakModel
 from worker import resident_megabytes
 
@@ -51,19 +50,12 @@ def use_field(model):
     field.summary()
 
 
-def replay_passes(model):
-    plan = model.make_field().plan(3)
-    size = model.limit()
-    gmsh.model.mesh.setSizeCallback(lambda *_: size)
-    with options(Mesh_MeshOnlyVisible=1, Mesh_Renumber=0):
-        for meshing_pass in plan:
-            gmsh.model.setVisibility(gmsh.model.getEntities(), 0)
-            gmsh.model.setVisibility([tuple(e) for e in meshing_pass["entities"]], 1)
-            gmsh.model.mesh.generate(meshing_pass["dim"])
-    gmsh.model.mesh.removeSizeCallback()
+def mesh_by_gmsh(model):
+    gmsh.option.setNumber("Mesh.MeshSizeMax", model.limit())
+    gmsh.model.mesh.generate(3)
 
 
-WAYS = {"nothing": lambda model: None, "sizes": use_field, "passes": replay_passes,
+WAYS = {"nothing": lambda model: None, "sizes": use_field, "gmsh": mesh_by_gmsh,
         "field": lambda model: model.make_field().generate(3)}
 
 
