@@ -17,9 +17,6 @@ namespace meshgrow {
 
 namespace {
 
-/// Times that the run is started again because Gmsh has split curves.
-constexpr int most_splits = 4;
-
 std::set<Entity> structured_faces(const Topology& topology, const MeshConstraints& constraints) {
   const std::set<Entity> below = topology.closure(constraints.mapped_volumes);
   std::set<Entity> result;
@@ -80,49 +77,6 @@ OrderedMesher::OrderedMesher(ModelField& model_field)
       structured_faces_(structured_faces(field_.topology(), constraints_)),
       adjuster_(field_.topology(), constraints_),
       masters_(copied_by_us(field_.topology(), constraints_)) {}
-
-void OrderedMesher::check_options() {
-  if (gmsh::option("Mesh.SubdivisionAlgorithm") != 0.0) {
-    throw Error(
-        "Mesh.SubdivisionAlgorithm would split the premeshed elements too: set it to 0 and "
-        "call refine() after meshing.");
-  }
-}
-
-void OrderedMesher::check_premeshed(const std::vector<MeshingPass>& passes) const {
-  const std::optional<Entity> curved = premeshed_.any_of_higher_order();
-  if (curved && gmsh::option("Mesh.ElementOrder") < 2.0) {
-    gmsh::log(entity_name(*curved) +
-                  " keeps its elements of higher order, but what is meshed beside it will be of "
-                  "first order: set Mesh.ElementOrder to 2 for a conforming mesh.",
-              "warning");
-  }
-  const Topology& topology = field_.topology();
-  const bool curves_are_meshed = std::any_of(passes.begin(), passes.end(),
-                                             [](const MeshingPass& pass) { return pass.dim == 1; });
-  for (const Entity& surface : topology.entities(2)) {
-    if (!premeshed_.contains(surface)) {
-      continue;
-    }
-    for (const Entity& curve : topology.lower(surface)) {
-      if (curve.dim == 1 && !premeshed_.contains(curve) && !gmsh::is_discrete(curve) &&
-          !has_no_length(curve, topology)) {
-        throw Error(entity_name(surface) + " has a mesh, but " + entity_name(curve) +
-                    " on its boundary has none: mesh both beforehand, or neither.");
-      }
-    }
-    if (curves_are_meshed && structured_faces_.count(surface) > 0) {
-      for (const Entity& volume : constraints_.mapped_volumes) {
-        if (!premeshed_.contains(volume) && topology.closure({volume}).count(surface) > 0) {
-          throw Error(entity_name(volume) + " is mapped (transfinite) and its " +
-                      entity_name(surface) +
-                      " has a mesh, whose structure Gmsh forgets when it meshes curves: mesh all "
-                      "curves beforehand as well, or leave the surface unmeshed.");
-        }
-      }
-    }
-  }
-}
 
 std::vector<MeshingPass> OrderedMesher::plan(const SizeField& field, std::set<Entity> meshed,
                                              int dim) {
@@ -325,91 +279,6 @@ std::vector<Entity> OrderedMesher::take_meshed(const std::vector<Entity>& entiti
   return meshed;
 }
 
-void OrderedMesher::keep_split_curves(const std::vector<Entity>& surfaces) {
-  // Where curves intersect each other in the plane of a surface, Gmsh splits their elements. Curves
-  // of this run may be split as long as nothing else stands on them.
-  const std::set<Entity> now(surfaces.begin(), surfaces.end());
-  std::set<Entity> below;
-  for (const Entity& entity : field_.topology().closure(surfaces)) {
-    if (entity.dim == 1 && user_premeshed_.count(entity) == 0) {
-      below.insert(entity);
-    }
-  }
-  for (const Entity& surface : field_.topology().entities(2)) {
-    if (now.count(surface) == 0 && gmsh::has_elements(surface)) {
-      for (const Entity& curve : field_.topology().lower(surface)) {
-        below.erase(curve);
-      }
-    }
-  }
-  const std::vector<Entity> kept = premeshed_.keep_of_other_cells({below.begin(), below.end()});
-  mark_stale(kept);
-  check_split_curves(surfaces, kept);
-}
-
-void OrderedMesher::check_split_curves(const std::vector<Entity>& surfaces,
-                                       const std::vector<Entity>& kept) {
-  const std::set<Entity> below = field_.topology().closure(surfaces);
-  SplitCurves split{premeshed_.misfits({below.begin(), below.end()})};
-  if (split.curves.empty()) {
-    return;
-  }
-  const bool may_change =
-      std::all_of(split.curves.begin(), split.curves.end(), [this](const Entity& entity) {
-        return entity.dim == 1 && user_premeshed_.count(entity) == 0 && masters_.count(entity) == 0;
-      });
-  if (!may_change || split_count_ == most_splits) {
-    // At once: volumes cannot be meshed from surfaces that end beside each other.
-    premeshed_.put_back_changed();
-  }
-  split.curves.insert(split.curves.end(), kept.begin(), kept.end());
-  throw split;
-}
-
-void OrderedMesher::keep_from_curve_passes(const std::vector<Entity>& surfaces) {
-  premeshed_.keep(surfaces);
-  std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(lost_faces_),
-               [this](const Entity& surface) { return structured_faces_.count(surface) > 0; });
-}
-
-void OrderedMesher::mesh_lost_faces() {
-  if (!lost_faces_.empty()) {
-    // With its mesh Gmsh has forgotten the structure that a mapped volume needs. The curves
-    // determine the mesh, so that the same one comes out again.
-    std::set<Entity> others = premeshed_.entities();
-    for (const Entity& face : lost_faces_) {
-      others.erase(face);
-    }
-    premeshed_.keep_only(others);
-    mesh(lost_faces_, true, "the structure of " + entity_names(lost_faces_, 3));
-    lost_faces_.clear();
-  }
-}
-
-void OrderedMesher::protect_discrete_faces(const std::vector<Entity>& volumes) const {
-  for (const Entity& entity : field_.topology().closure(volumes)) {
-    if (entity.dim == 2 && gmsh::has_elements(entity) && gmsh::is_discrete(entity)) {
-      // Gmsh counts no discrete surfaces when it asks whether surfaces are meshed, and then meshes
-      // those with a parametrisation again. A single element, which it removes, says that
-      // the model is meshed up to volumes.
-      if (!gmsh::has_elements(volumes.front())) {
-        const std::size_t node = gmsh::elements(entity).front().node_tags.front();
-        gmsh::add_elements(volumes.front(),
-                           {{gmsh::tetrahedron_type, {}, {node, node, node, node}}});
-      }
-      return;
-    }
-  }
-}
-
-void OrderedMesher::remove_protection(const Entity& volume) const {
-  const std::vector<gmsh::Elements> elements = gmsh::elements(volume);
-  if (volume.dim == 3 && elements.size() == 1 && elements.front().node_tags.size() == 4 &&
-      elements.front().node_tags[0] == elements.front().node_tags[1]) {
-    gmsh::clear_mesh({volume});
-  }
-}
-
 void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
                          const std::string& name) {
   model_field_.stop_if_asked();
@@ -442,43 +311,6 @@ void OrderedMesher::mesh(const std::vector<Entity>& entities, bool attached,
   premeshed_.put_back_missing();
 }
 
-void OrderedMesher::adjust_curves(const std::vector<Entity>& stage) {
-  constexpr const char* range[] = {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax", "Mesh.MeshSizeFactor"};
-  // Gmsh lets no size exceed its own and the model's: in a large unit, ours are far below them.
-  constexpr double unit = 1e6;
-  const auto mesh_again = [&](const std::vector<Entity>& curves,
-                              std::map<Entity, SizeAnswers::Scale> scales) {
-    model_field_.answers_.set_scales(
-        std::move(scales),
-        {state_.user_option(range[0]), state_.user_option(range[1]), state_.user_option(range[2])},
-        unit);
-    state_.set_option(range[0], 0.0);
-    state_.set_option(range[1], 1e22);
-    state_.set_option(range[2], unit);
-    mesh(curves, true, "adjusting " + entity_names(curves, 3));
-    for (const char* name : range) {
-      state_.set_option(name, state_.user_option(name));
-    }
-    model_field_.answers_.clear_scales();
-  };
-  const std::vector<Entity> adjusted = adjuster_.adjust(stage, mesh_again);
-  if (!adjusted.empty()) {
-    model_field_.tell("Adjusted " + entity_names(adjusted, 6) + " for mapped surfaces");
-    mark_stale(adjusted);
-  }
-}
-
-void OrderedMesher::clear_unadjusted_curves() const {
-  for (const std::vector<Entity>& connected : adjuster_.connected_curves()) {
-    for (const Entity& curve : connected) {
-      if (std::count(unadjusted_.begin(), unadjusted_.end(), curve) > 0 &&
-          gmsh::has_elements(curve)) {
-        gmsh::clear_mesh({curve});
-      }
-    }
-  }
-}
-
 bool OrderedMesher::acts_effectively(const Entity& entity) const {
   const std::vector<std::size_t> functions = field_.functions_on(entity);
   return std::any_of(functions.begin(), functions.end(),
@@ -488,24 +320,6 @@ bool OrderedMesher::acts_effectively(const Entity& entity) const {
 void OrderedMesher::read_new_sources() {
   model_field_.read_sources({stale_.begin(), stale_.end()});
   stale_.clear();
-}
-
-void OrderedMesher::report_unmeshed_sources(const std::vector<Entity>& entities) {
-  std::map<std::size_t, std::vector<Entity>> acted_on;
-  for (const Entity& entity : entities) {
-    for (const std::size_t function : field_.functions_on(entity)) {
-      acted_on[function].push_back(entity);
-    }
-  }
-  for (const auto& [function, targets] : acted_on) {
-    // A source's own boundary is meshed before it, and other sources of the function are not asked
-    // to wait for it.
-    const std::set<Entity> own = field_.topology().closure(field_.functions()[function].sources);
-    if (std::any_of(targets.begin(), targets.end(),
-                    [&own](const Entity& entity) { return own.count(entity) == 0; })) {
-      model_field_.report_unmeshed(function);
-    }
-  }
 }
 
 void OrderedMesher::mark_stale(const std::vector<Entity>& meshed) {
@@ -518,50 +332,6 @@ void OrderedMesher::mark_stale(const std::vector<Entity>& meshed) {
       stale_.insert(i);
     }
   }
-}
-
-void OrderedMesher::check_faces_stayed(const std::vector<Entity>& entities,
-                                       const std::string& pass_name) const {
-  if (entities.front().dim < 3) {
-    return;  // a pass over curves takes surface meshes away rightly: they are put back after it
-  }
-  std::vector<Entity> gone;
-  for (const Entity& entity : field_.topology().closure(entities)) {
-    if (entity.dim == 2 && premeshed_.contains(entity) && !gmsh::has_elements(entity)) {
-      gone.push_back(entity);
-    }
-  }
-  if (!gone.empty()) {
-    throw Error("Gmsh threw away the mesh of " + entity_names(gone) + " in " + pass_name +
-                ", as it does with discrete surfaces that have a parametrisation: leave out "
-                "createGeometry(), or use register() and Gmsh's own generate(); the mesh was put "
-                "back.");
-  }
-}
-
-void OrderedMesher::refuse_empty(const LeftEmpty& left) const {
-  const auto discrete = std::find_if(
-      left.entities.begin(), left.entities.end(),
-      [](const Entity& entity) { return entity.dim == 3 && gmsh::is_discrete(entity); });
-  if (discrete != left.entities.end()) {
-    throw Error(entity_name(*discrete) +
-                " came with a mesh and has no geometry, and Gmsh meshes no such volume again: open "
-                "the geometry before the mesh, or put a volume on the surfaces in a model without "
-                "it.");
-  }
-  const auto scanned = std::find_if(
-      left.entities.begin(), left.entities.end(),
-      [](const Entity& entity) { return entity.dim < 3 && gmsh::is_discrete(entity); });
-  const std::string reason = gmsh::last_error();
-  if (scanned != left.entities.end() && reason.empty()) {
-    throw Error(entity_name(*scanned) +
-                " came with a mesh and has no geometry, and Gmsh did not mesh it again: keep its "
-                "mesh, or call classifySurfaces() and createGeometry() before it is taken away.");
-  }
-  throw Error("Gmsh could not mesh " + entity_names(left.entities) + " in " + left.pass_name +
-              (reason.empty() ? "" : " (" + reason + ")") +
-              ": repair the geometry, change sizes or algorithm, or, if it is extruded from "
-              "something meshed before, mesh it beforehand as well; the rest is kept.");
 }
 
 }  // namespace meshgrow
