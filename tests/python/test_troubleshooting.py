@@ -123,6 +123,38 @@ def test_a_field_does_not_outlive_a_change_of_the_geometry(boxes):
     mentions("other entities than when this size field was made")
 
 
+def test_a_field_does_not_outlive_a_model_that_is_built_anew_with_the_same_tags():
+    volume = models.box(1.0)
+    field = meshgrow.SizeField()
+    field.add_fixed([volume], [volume], 0.1, 1.2, 0.5)
+    gmsh.model.remove()
+    assert models.box(2.0) == volume
+    with pytest.raises(meshgrow.Error, match="is not where it was when this size field was made"):
+        field.refresh()
+    mentions("is not where it was when this size field was made")
+
+
+def test_a_scanned_surface_that_lost_its_mesh_is_not_meshed_again(boxes):
+    gmsh.model.add("scan")
+    surface = gmsh.model.addDiscreteEntity(2)
+    gmsh.model.mesh.addNodes(2, surface, [1, 2, 3], [0, 0, 0, 1, 0, 0, 0, 1, 0])
+    gmsh.model.mesh.addElementsByType(surface, 2, [1], [1, 2, 3])
+    field = meshgrow.SizeField()
+    field.add_fixed([(2, surface)], [(2, surface)], 0.1, 1.2, 0.5)
+    gmsh.model.mesh.clear()
+    with pytest.raises(meshgrow.Error, match="came with a mesh and has no geometry, and Gmsh did"):
+        field.generate(2)
+    mentions("came with a mesh and has no geometry, and Gmsh did not mesh it again")
+
+
+def test_a_device_is_refused_as_output(tmp_path):
+    (tmp_path / "box.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1};')
+    result = subprocess.run([PROGRAM, "mesh", "box.geo", "-o", "/dev/null"], cwd=tmp_path, text=True,
+                            capture_output=True)
+    assert result.returncode == 2 and "Cannot write /dev/null" in result.stderr
+    mentions("Cannot write")
+
+
 def test_a_saved_field_cannot_be_changed(boxes, tmp_path):
     meshes.premesh([boxes.between], 0.1)
     field = grown(boxes)
