@@ -72,14 +72,21 @@ GridNodes GridBuilder::build() {
       const int between = (deep_enough + too_deep) / 2;
       (fits(between) ? deep_enough : too_deep) = between;
     }
+    // A single cell fits: the entries that one may keep count as less than the fewest allowed.
     if (max_depth_ != deep_enough) {
       fits(deep_enough);
     }
   }
-  if (options_.progress) {
-    options_.progress(1.0);
-  }
+  tell(1.0);
   return std::move(nodes_);
+}
+
+/// The fraction never becomes smaller, although a grid with too many cells is begun anew.
+void GridBuilder::tell(double finished) {
+  told_ = std::max(told_, finished);
+  if (options_.progress) {
+    options_.progress(told_);
+  }
 }
 
 /// Builds `nodes_` with cells of at most this depth; false if they are too many.
@@ -98,8 +105,8 @@ bool GridBuilder::fits(int max_depth) try {
                           own_classifier(omp_get_thread_num()), parts[i]);
       },
       [&](std::size_t done) {
-        if (options_.progress && done < open.size()) {
-          options_.progress(static_cast<double>(done) / static_cast<double>(open.size()));
+        if (done < open.size()) {
+          tell(static_cast<double>(done) / static_cast<double>(open.size()));
         }
       });
   join(open, roots, parts);

@@ -54,6 +54,7 @@ class GridBuilder {
   /// `thread`: its number in the team that works on this grid; who calls may be one of others.
   CellClassifier& own_classifier(int thread);
   bool fits(int max_depth);
+  void tell(double finished);
   void join(const std::vector<OpenCell>& open, const std::vector<NodeCode>& roots,
             std::vector<Nodes>& parts);
   std::vector<OpenCell> build_top();
@@ -82,6 +83,7 @@ class GridBuilder {
   double smallest_start_size_;
   int max_depth_ = max_grid_depth;
   bool is_limited_ = false;
+  double told_ = 0.0;
   std::unique_ptr<CellBudget> budget_;
   std::vector<std::unique_ptr<CellClassifier>> classifiers_;  ///< one a thread
 };

@@ -148,6 +148,21 @@ TEST(MaxCells, TellTheToleranceThatInterpolationReaches) {
   EXPECT_LE(worst, reached * (1.0 + 1e-9));
 }
 
+TEST(MaxCells, LetProgressRiseAlthoughBuildingIsBegunAnew) {
+  std::vector<double> told;
+  GridOptions options;
+  options.tolerance = tolerance;
+  options.threads = 1;
+  options.facets_per_exact_leaf = 30;
+  options.max_cells = cells_of(grid_with(0)) / 2;
+  options.progress = [&told](double done) { told.push_back(done); };
+  const BackgroundGrid grid(sphere_tree(), size_limit, test::cube(1.5), options);
+  EXPECT_TRUE(grid.statistics().is_limited);
+  EXPECT_GT(told.size(), 100u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1.0);
+}
+
 TEST(MaxCells, OutsideTheirRangeAreAnError) {
   for (const double wrong : {7.0, -1.0, 4.1e8, std::nan("")}) {
     EXPECT_THROW(check_max_cells(wrong), Error) << wrong;
