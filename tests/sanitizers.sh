@@ -18,9 +18,17 @@ status=0
 
 wants() { [[ " ${parts[*]} " == *" $1 "* ]]; }
 
+# Seconds of processor time of all that ran and ended so far.
+processor_time() {
+  local fields
+  read -ra fields <"/proc/$$/stat"
+  echo $(((fields[15] + fields[16]) / $(getconf CLK_TCK)))
+}
+
 # build FOLDER KIND TARGET...: with the sanitizers of that kind.
 build() {
-  local folder=$1 kind=$2
+  local folder=$1 kind=$2 began=$SECONDS before
+  before=$(processor_time)
   shift 2
   say "Building with -DMESHGROW_SANITIZE=$kind in $folder"
   mkdir -p "$folder"
@@ -28,15 +36,22 @@ build() {
   cmake -S . -B "$folder" -G Ninja -DMESHGROW_SANITIZE="$kind" -DCMAKE_BUILD_TYPE= \
     >"$folder/configure.log" 2>&1 || fail "cmake failed: see $folder/configure.log"
   cmake --build "$folder" -j2 --target "$@" || fail "the build with sanitizers failed."
+  tell passed "build: $kind" "$began" "$before"
+}
+
+# tell RESULT NAME BEGAN BEFORE: a line for the summary.
+tell() {
+  summary+=("$1  $2 ($((SECONDS - $3)) s, $(($(processor_time) - $4)) s of processor time)")
 }
 
 # check NAME COMMAND...: runs it, and keeps its result for the summary.
 check() {
-  local name=$1 began=$SECONDS result=passed
+  local name=$1 began=$SECONDS result=passed before
+  before=$(processor_time)
   shift
   say "$name"
   "$@" || { result=FAILED; status=1; }
-  summary+=("$result  $name ($((SECONDS - began)) s)")
+  tell "$result" "$name" "$began" "$before"
 }
 
 # halves PROGRAM [ARGUMENT...]: a GoogleTest program as two processes.
@@ -60,6 +75,8 @@ tells_races() {
 }
 
 export UBSAN_OPTIONS=print_stacktrace=1
+# Threads that wait leave the processor to the other process.
+export OMP_WAIT_POLICY=passive
 # The trees of facets and all that stands on them, by each of the instruction sets that the
 # processor has; the fastest is the one without a name.
 kernels=(plain avx2)
