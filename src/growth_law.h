@@ -17,11 +17,6 @@ double growth_slope(double growth_rate);
 /// Size at distance R ≥ 0 (model units) from a facet of start size S0 > 0 (model units): S0 + α R.
 double grown_size(double start_size, double growth_rate, double distance);
 
-/// The same by the paper's marching sum: adds one layer at a time until the distance is reached and
-/// interpolates linearly in the last layer. The reference for `grown_size`; its cost is the number
-/// of layers, and for g = 1 it returns S0 at once.
-double marched_size(double start_size, double growth_rate, double distance);
-
 }  // namespace meshgrow
 
 #endif

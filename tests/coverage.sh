@@ -3,7 +3,8 @@
 # the C++ programs and the Python tests against both generations of Gmsh, and prints how many lines
 # of src/, of gmsh_plugin/ and of the Python package they ran, and those that they did not in the
 # files with most of them. Fails below 95 % of src/, below 85 % of gmsh_plugin/ and after a failed
-# test. Arguments go to ctest.
+# test. Left out are the tests that take long and run what others run as well: the examples, the
+# page, the soak. Arguments go to ctest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 with_checks=1
@@ -41,10 +42,17 @@ rm -rf "$coverage/counts"
 mkdir "$coverage/counts"
 status=0
 results=$coverage/results.txt
-# All tests of the core in one process, not in one each.
-"$coverage/bin/core_tests" --gtest_brief=1 || status=1
+# All tests of the core in two processes, not in one each.
+shards=()
+for shard in 0 1; do
+  GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX=$shard "$coverage/bin/core_tests" --gtest_brief=1 &
+  shards+=($!)
+done
+for shard in "${shards[@]}"; do
+  wait "$shard" || status=1
+done
 ctest --test-dir "$coverage" -j2 --output-on-failure -R '^(plugin|python|linked_program|cpp_program)' \
-  "$@" | tee "$results" || status=1
+  -E 'test_(examples|.*_example|page|soak)$' "$@" | tee "$results" || status=1
 
 say "Counting"
 objects=("$coverage/lib/libmeshgrow.so" -object "$coverage/bin/meshgrow")
