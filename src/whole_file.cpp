@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 void write_whole_file(const std::string& path,
                       const std::function<bool(const std::string& unfinished)>& write) {
   const std::string place = place_of_file(path);
-  const std::string unfinished = place + ".unfinished";
+  const std::string unfinished = unfinished_name(path);
   const auto fail = [&](const std::string& reason) {
     throw Error("Cannot write " + path + " (" + reason +
                 "): choose another file, or make room for it.");
@@ -39,6 +39,8 @@ void write_whole_file(const std::string& path,
     throw;
   }
 }
+
+std::string unfinished_name(const std::string& path) { return place_of_file(path) + ".unfinished"; }
 
 std::string place_of_file(const std::string& path) {
   std::error_code failed;

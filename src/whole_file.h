@@ -13,6 +13,9 @@ namespace meshgrow {
 void write_whole_file(const std::string& path,
                       const std::function<bool(const std::string& unfinished)>& write);
 
+/// Where write_whole_file has it until it is complete.
+std::string unfinished_name(const std::string& path);
+
 /// Where a file of this name really is: the end of symbolic links.
 std::string place_of_file(const std::string& path);
 

@@ -21,6 +21,7 @@
 #include "progress.h"
 #include "quoted_text.h"
 #include "usage_error.h"
+#include "whole_file.h"
 
 namespace meshgrow::cli {
 
@@ -94,6 +95,7 @@ FieldPointer field_of_model(const FieldCommandArguments& arguments,
 std::size_t write(meshgrow_field* field, const std::string& output,
                   const std::string& entity_text) {
   std::size_t cells = 0;
+  remove_when_interrupted(unfinished_name(output));
   if (is_saved_field(output)) {
     check(meshgrow_field_save(field, output.c_str()));
   } else {
@@ -103,6 +105,8 @@ std::size_t write(meshgrow_field* field, const std::string& output,
     }
     check(meshgrow_field_write_view(field, output.c_str(), entity.dim, entity.tag, &cells));
   }
+  tell_that_it_is_written();
+  remove_when_interrupted("");
   return cells;
 }
 
@@ -136,14 +140,15 @@ void write_field(const FieldCommandArguments& arguments) {
                      ": name another output with -o.");
   }
   if (from_file) {
+    end_when_interrupted("size field");
     const FieldPointer field(meshgrow_field_load(arguments.model.c_str()));
     check(field ? 0 : 1);
     tell_written(field.get(), arguments.output,
                  write(field.get(), arguments.output, arguments.entity));
     return;
   }
-  end_when_interrupted();
   const GmshSession session({"-v", std::to_string(arguments.verbosity)});
+  end_when_interrupted("size field");  // Gmsh, too, sets what signals do
   FieldPointer field;
   std::size_t cells = 0;
   {

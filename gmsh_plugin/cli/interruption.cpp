@@ -14,7 +14,8 @@ namespace {
 /// Only what may be touched in a signal handler: plain memory and atomics.
 std::array<char, 4096> path_to_remove{};
 std::atomic<bool> has_path{false};
-std::atomic<bool> mesh_is_written{false};
+std::atomic<const char*> goal{"mesh"};
+std::atomic<bool> goal_is_written{false};
 
 void tell(const char* text) {
   // There is no one to tell if standard error is gone.
@@ -28,14 +29,16 @@ void end_at_once(int signal) {
     unlink(path_to_remove.data());
   }
   tell(isatty(STDERR_FILENO) != 0 ? "\nmeshgrow: " : "meshgrow: ");
-  tell(mesh_is_written ? "Interrupted after the mesh was written.\n"
-                       : "Interrupted: no mesh was written.\n");
+  tell(goal_is_written ? "Interrupted after the " : "Interrupted: no ");
+  tell(goal);
+  tell(" was written.\n");
   _exit(128 + signal);
 }
 
 }  // namespace
 
-void end_when_interrupted() {
+void end_when_interrupted(const char* what_is_written) {
+  goal = what_is_written;
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction before {};
     struct sigaction action {};
@@ -58,6 +61,6 @@ void remove_when_interrupted(const std::string& path) {
   }
 }
 
-void tell_that_mesh_is_written() { mesh_is_written = true; }
+void tell_that_it_is_written() { goal_is_written = true; }
 
 }  // namespace meshgrow::cli

@@ -135,7 +135,7 @@ void mesh(const MeshArguments& arguments) {
   const std::vector<std::string> texts = size_function_texts(arguments.field);
   const std::vector<FailCondition> conditions = parse_fail_conditions(arguments.fail_if);
   const GmshSession session(arguments.gmsh.options);
-  end_when_interrupted();  // Gmsh, too, sets what signals do
+  end_when_interrupted("mesh");  // Gmsh, too, sets what signals do
   std::cout << "Reading " << arguments.models.front() << std::endl;
   open_model(arguments.models);
   if (arguments.gmsh.task == Task::parse) {
@@ -164,7 +164,7 @@ void mesh(const MeshArguments& arguments) {
     gmsh::partition(partitions);
   }
   write_mesh(output);
-  tell_that_mesh_is_written();
+  tell_that_it_is_written();
   if (field) {
     std::cout << '\n' << take_text(meshgrow_field_summary(field.get()));
   }

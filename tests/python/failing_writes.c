@@ -2,6 +2,7 @@
 
    FAIL_WRITES=full  there is no room for any of it
    FAIL_WRITES=kill  the process is killed (SIGKILL) at the second piece
+   FAIL_WRITES=interrupt  it gets Ctrl-C (SIGINT) at the second piece
    FAIL_WRITES=move  it is killed when the file is complete and about to be moved to its place
 
    FAIL_FILE names a part of the path of the only file concerned. */
@@ -43,6 +44,9 @@ static int fails(int file) {
   }
   if (is_asked_for("kill") && ++pieces == 2) {
     kill(getpid(), SIGKILL);
+  }
+  if (is_asked_for("interrupt") && ++pieces == 2) {
+    kill(getpid(), SIGINT);
   }
   return is_asked_for("full");
 }

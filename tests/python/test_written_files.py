@@ -11,6 +11,7 @@ import gmsh
 import meshgrow
 import pytest
 
+import child
 import models
 from program import PROGRAM, run
 
@@ -20,7 +21,8 @@ SetFactory("OpenCASCADE");
 Sphere(1) = {0, 0, 0, 1};
 Mesh.MeshSizeMax = 0.08;
 """
-FIXED = "fixed source Surface{1} attach Volume{1} size 0.05 growth 1.2 limit 0.5"
+FIXED_FIELD = ["--size-function",
+               "fixed source Surface{1} attach Volume{1} size 0.05 growth 1.2 limit 0.5"]
 PRECIOUS = "of before"
 OUTPUTS = ["sizes.mgf", "sizes.vtu", "sizes.pos", "sizes.msh", "mesh.msh", "mesh.stl",
            "report.json"]
@@ -48,7 +50,7 @@ def failing_writes(tmp_path_factory):
 
 def command(ball, output):
     if output in FIELDS:
-        return ["field", ball, "-o", ball.parent / output, "--size-function", FIXED]
+        return ["field", ball, "-o", ball.parent / output, *FIXED_FIELD]
     if output == "report.json":
         return ["mesh", ball, "-2", "-o", ball.parent / "a.msh", "--report", ball.parent / output]
     return ["mesh", ball, "-2", "-o", ball.parent / output]
@@ -119,6 +121,50 @@ def test_sigkill_leaves_the_old_file(ball, failing_writes, output, when):
     assert run(*command(ball, output)).returncode == 0
     assert place.read_bytes() != PRECIOUS.encode()
     assert set(names(ball.parent)) - {"a.msh"} == {"ball.geo", output}
+
+
+@pytest.mark.parametrize("model", ["ball.geo", "saved.mgf"])
+def test_an_interrupt_while_a_field_is_written_leaves_the_old_file(ball, failing_writes, model):
+    if model == "saved.mgf":
+        assert run("field", ball, "-o", ball.parent / model, *FIXED_FIELD).returncode == 0
+    place = ball.parent / "sizes.vtu"
+    place.write_text(PRECIOUS)
+    before = names(ball.parent)
+    options = FIXED_FIELD if model == "ball.geo" else []
+    stopped = run("field", ball.parent / model, "-o", place, *options,
+                  LD_PRELOAD=failing_writes, FAIL_WRITES="interrupt")
+    assert stopped.returncode == 130
+    assert stopped.stderr.splitlines()[-1] == (
+        "meshgrow: Interrupted: no size field was written.")
+    assert place.read_text() == PRECIOUS
+    assert names(ball.parent) == before
+
+
+def test_an_interrupt_while_python_writes_is_raised_and_leaves_a_whole_file(tmp_path,
+                                                                            failing_writes):
+    """It comes too late to stop what takes no time."""
+    path = tmp_path / "sizes.mgf"
+    path.write_text(PRECIOUS)
+    assert child.run_child("""
+import os, signal
+import gmsh
+import meshgrow
+import models
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+volume = models.single(lambda occ: occ.addSphere(0, 0, 0, 1))
+field = meshgrow.SizeField(evaluator="grid")
+field.add_fixed(gmsh.model.getEntities(2), [volume], 0.05, 1.2, 0.5)
+field.refresh()
+try:
+    field.save(%r)
+except KeyboardInterrupt:
+    print("interrupted")
+print("%%.5f" %% meshgrow.SizeField.load(%r).size(*volume, [[1, 0, 0]])[0])
+""" % (str(path), str(path)), LD_PRELOAD=failing_writes, FAIL_WRITES="interrupt") == [
+        "interrupted", "0.05000"]
+    assert names(tmp_path) == ["sizes.mgf"]
 
 
 def test_python_is_told_of_a_full_disk(tmp_path):
