@@ -6,9 +6,11 @@
 #include <csignal>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 
+#include "c_guard.h"
 #include "entity_text.h"
 #include "error.h"
 #include "opened_field.h"
@@ -44,7 +46,14 @@ class AnswerStream {
   int descriptor_;
 };
 
-void tell(const std::string& sentence) { std::cerr << "meshgrow: " << sentence << std::endl; }
+/// Needs no memory, as there may be none.
+void tell(const char* sentence, const char* consequence = "") {
+  std::cerr << "meshgrow: " << sentence << consequence << std::endl;
+}
+
+const char* sentence_of(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ? c::out_of_memory : error.what();
+}
 
 void no_sizes(const Vec3* /*points*/, std::size_t count, double* sizes) {
   std::fill(sizes, sizes + count, SizeField::no_size);
@@ -87,7 +96,7 @@ ExitCode serve(const ServeArguments& arguments) {
     if (::isatty(STDIN_FILENO) != 0) {
       throw;
     }
-    tell(std::string(error.what()) + " Until then Gmsh gets no sizes from here.");
+    tell(sentence_of(error), " Until then Gmsh gets no sizes from here.");
     sizes = no_sizes;
   }
   std::signal(SIGPIPE, SIG_IGN);  // not before: starting, Gmsh 4.15 sets it back
@@ -96,7 +105,7 @@ ExitCode serve(const ServeArguments& arguments) {
       sizes(points, count, to);
     } catch (const std::exception& error) {
       // A damaged part of a saved field, found when it is touched, or there is no memory.
-      tell(std::string(error.what()) + " From here on Gmsh gets no sizes from here.");
+      tell(sentence_of(error), " From here on Gmsh gets no sizes from here.");
       result = work_failed;
       sizes = no_sizes;
       sizes(points, count, to);

@@ -77,9 +77,17 @@ bool write_all(int output, const void* data, std::size_t size) {
   return true;
 }
 
-/// Answers the requests in the bytes; the last one may be cut off.
+/// Answers the requests in the bytes; the last one may be cut off. Takes all its memory at once:
+/// Gmsh would wait for ever for an answer that there is no memory for.
 class Batch {
  public:
+  Batch() {
+    answers_.reserve(most_requests);
+    points_.reserve(most_requests);
+    places_.reserve(most_requests);
+    found_.reserve(most_requests);
+  }
+
   /// Returns whether one of the requests asks to end: those before it are answered.
   bool answer(const char* bytes, std::size_t requests, const SizesAt& sizes) {
     answers_.clear();

@@ -32,7 +32,7 @@ using SizesAt = std::function<void(const Vec3* points, std::size_t count, double
 /// Answers requests until the end. All whole requests that are there are answered by one call of
 /// `sizes` and one of `write`, and nothing is waited for that need not come. Points that are not
 /// finite and sizes above `served_no_size`, or not positive, get `served_no_size`. What the three
-/// throw is passed on.
+/// throw is passed on; needs no more memory once it has begun to read.
 ServeEnd serve_sizes(const ReadSome& read, const WriteAll& write, const SizesAt& sizes);
 
 /// The same over file descriptors, blocking or not. Throws Error if reading or writing fails for
