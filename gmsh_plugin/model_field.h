@@ -188,6 +188,7 @@ class ModelField {
   bool waits_for_meshes(std::size_t function) const;
   void make_ready_for_calls();
   void try_to_make_ready_for_calls();
+  void tell_of_other_model();
   /// Keeps the meshes of the sources of this function and those after it.
   void keep_meshed_sources(std::size_t first_function);
   void forget_kept_sources();
@@ -224,6 +225,7 @@ class ModelField {
   std::map<Entity, FacetedSource> kept_;
   bool is_keeping_ = false;
   std::atomic<bool> ready_for_calls_{false};
+  std::atomic<bool> told_of_other_model_{false};
   std::string file_;  ///< that it was loaded from; empty for a field of the model
   bool generating_ = false;
   RunTimes run_times_;

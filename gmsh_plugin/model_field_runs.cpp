@@ -106,6 +106,7 @@ double ModelField::answer_call(int dim, int tag, double x, double y, double z,
                                double proposed) noexcept {
   try {
     if (file_.empty() && gmsh::current_model() != model_) {
+      tell_of_other_model();
       return proposed;
     }
     if (!ready_for_calls_ && !generating_ && !answers_.is_asking_user()) {
@@ -117,6 +118,16 @@ double ModelField::answer_call(int dim, int tag, double x, double y, double z,
     }
   }
   return answers_.answer(dim, tag, x, y, z, proposed);
+}
+
+/// Once: a run asks a million times.
+void ModelField::tell_of_other_model() {
+  if (!told_of_other_model_.exchange(true)) {
+    gmsh::log("The size field of model \"" + model_ + "\" is asked for sizes of model \"" +
+                  gmsh::current_model() +
+                  "\" and has none for it: give that model a field of its own.",
+              "warning");
+  }
 }
 
 void ModelField::read_late_sources(int dim) {

@@ -193,12 +193,17 @@ def test_the_answer_is_the_smaller_of_proposal_and_field():
     assert isinstance(field(*model.face, *at), float)
 
 
-def test_a_field_of_another_model_than_the_current_one_proposes_nothing():
+def test_a_field_of_another_model_than_the_current_one_proposes_nothing_and_says_so_once():
     model = models.square()
     field = meshgrow.SizeField()
     field.add_fixed([model.bottom], [model.face], 0.05, 1.2, 0.3)
     gmsh.model.add("other")
-    assert field(*model.face, 0.5, 0.0, 0.0, 0.7) == 0.7
+    gmsh.logger.start()
+    for _ in range(3):
+        assert field(*model.face, 0.5, 0.0, 0.0, 0.7) == 0.7
+    told = [line for line in gmsh.logger.get() if line.startswith("Warning")]
+    gmsh.logger.stop()
+    assert len(told) == 1 and '"square"' in told[0] and '"other"' in told[0], told
     gmsh.model.setCurrent("square")
     assert field(*model.face, 0.5, 0.0, 0.0, 0.7) < 0.06
 
