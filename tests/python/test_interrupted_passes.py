@@ -146,6 +146,8 @@ WORKS = {
     "smallest_size": lambda field, model, path: field.smallest_size([[1.2, 0, 0]]),
     "add_view": lambda field, model, path: field.add_view(),
     "write_view": lambda field, model, path: field.write_view(path),
+    "probe": lambda field, model, path: field.probe(*model.outer, [1.2, 0, 0]),
+    "report": lambda field, model, path: meshgrow.report(2, field=field),
 }
 
 

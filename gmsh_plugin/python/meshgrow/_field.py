@@ -86,6 +86,17 @@ class SizeField:
         self._raised.raise_again()
         check(failed)
 
+    def _text(self, function: Callable[..., Optional[int]], *arguments: Any) -> str:
+        """The same for a call that returns a text."""
+        with interrupts_kept(self._raised.keep):
+            text = function(self._handle, *arguments)
+        try:
+            self._raised.raise_again()
+        except BaseException:
+            lib.meshgrow_free(text)
+            raise
+        return take_text(text)
+
     def _set(self, name: str, value: float) -> None:
         check(lib.meshgrow_field_set_option(self._handle, c_text(name), float(value)))
 
@@ -243,8 +254,8 @@ class SizeField:
         ``attached``, ``entities``, ``functions`` (indices) and ``sources`` (read before the pass).
         Printed, it reads as text."""
         dim = operator.index(dim)
-        return Plan(json.loads(take_text(lib.meshgrow_field_plan_json(self._handle, dim))),
-                    take_text(lib.meshgrow_field_plan(self._handle, dim)))
+        return Plan(json.loads(self._text(lib.meshgrow_field_plan_json, dim)),
+                    self._text(lib.meshgrow_field_plan, dim))
 
     def combine(self, sizes: Optional[UserSizes]) -> None:
         """Sizes of your own beside the field: Gmsh is told the smaller one, in the whole model.
@@ -318,7 +329,7 @@ class SizeField:
         (None for other rules) its ``entity``, ``element`` (tag, or None), ``corners``,
         ``start_size``, ``growth_rate``, ``slope`` and ``distance`` from the point.
         """
-        return probe(self._handle, operator.index(dim), operator.index(tag), point)
+        return probe(self._text, operator.index(dim), operator.index(tag), point)
 
     def smallest_size(self, points: npt.ArrayLike, out: Optional[Doubles] = None) -> Doubles:
         """The same for who knows no entity: the smallest size that any function asks for."""
@@ -359,7 +370,7 @@ class SizeField:
 
     def summary(self) -> str:
         """Functions, groups and grids as text for people."""
-        return take_text(lib.meshgrow_field_summary(self._handle))
+        return self._text(lib.meshgrow_field_summary)
 
     def statistics(self) -> Dict[str, Any]:
         """The same as a dictionary: ``functions`` and ``groups``, each a list, and ``seconds``.
@@ -368,7 +379,7 @@ class SizeField:
         that they ask for included, and ``meshgrow``, the rest.
         """
         result: Dict[str, Any] = json.loads(
-            take_text(lib.meshgrow_field_summary_json(self._handle)))
+            self._text(lib.meshgrow_field_summary_json))
         return result
 
 

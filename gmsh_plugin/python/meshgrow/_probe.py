@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Dict
+from typing import Any, Callable, Dict
 
 import numpy.typing as npt
 
-from ._library import doubles, lib, points_array, take_text
+from ._library import doubles, lib, points_array
 
 
-def probe(handle: int, dim: int, tag: int, point: npt.ArrayLike) -> Dict[str, Any]:
-    """See :meth:`SizeField.probe`."""
+def probe(text: Callable[..., str], dim: int, tag: int, point: npt.ArrayLike) -> Dict[str, Any]:
+    """See :meth:`SizeField.probe`; `text` makes a call of the field's that returns a text."""
     array = points_array(point)
     if len(array) != 1:
         raise ValueError("give one point of three coordinates, not %d" % len(array))
-    found = json.loads(take_text(lib.meshgrow_field_probe_json(handle, dim, tag, doubles(array))))
+    found = json.loads(text(lib.meshgrow_field_probe_json, dim, tag, doubles(array)))
     for owner in (found, found["facet"] or {}):
         if owner.get("entity") is not None:
             owner["entity"] = tuple(owner["entity"])

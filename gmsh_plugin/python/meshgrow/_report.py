@@ -19,9 +19,12 @@ def report(dim: int = 3, entities: DimTags = (),
     the sizes asked for at their midpoints. Element size is the mean edge length; ``ratio_…`` is the
     larger over the smaller size of neighbours. What could not be measured is None.
     """
-    handle = None if field is None else field._handle
-    result: Dict[str, Any] = json.loads(
-        take_text(lib.meshgrow_report_json(dim, *dim_tags(entities), handle)))
+    if field is None:
+        text = take_text(lib.meshgrow_report_json(dim, *dim_tags(entities), None))
+    else:
+        tags = dim_tags(entities)
+        text = field._text(lambda handle: lib.meshgrow_report_json(dim, *tags, handle))
+    result: Dict[str, Any] = json.loads(text)
     return result
 
 
