@@ -189,7 +189,7 @@ def test_surfaces_and_curves_made_by_several_threads_do_not_depend_on_their_numb
 
 
 INTERRUPTED = """
-import os, signal, threading
+import os, signal
 import gmsh, meshgrow
 import models
 from meshes import closure, has_elements, premesh, snapshots
@@ -201,18 +201,19 @@ gmsh.option.setNumber("General.NumThreads", 1)
 model = models.sphere_in_box()
 premesh([model.sphere], 0.3)
 before = snapshots(closure([model.sphere]))
-sent = []
+asked = []
 
 
-def progress(line):
-    if "pass" in line and "Volume %%d" %% model.outer[1] in line and not sent:
-        # From another thread, so that it comes while Gmsh is meshing.
-        sent.append(threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)))
-        sent[0].start()
+def sizes(dim, tag, x, y, z, lc=1e22):
+    asked.append(dim)
+    if asked.count(3) == 5 and dim == 3:  # so that it comes while Gmsh is meshing
+        os.kill(os.getpid(), signal.SIGINT)
+    return 1e22
 
 
-field = meshgrow.SizeField(progress=progress)
+field = meshgrow.SizeField()
 field.add_mesh([model.sphere], [model.outer], 1.1, 0.25)
+field.combine(sizes)
 try:
     field.generate(3)
     print("end")
