@@ -219,7 +219,6 @@ def test_a_place_that_no_file_can_have_is_refused(ball, output, place):
     assert names(ball.parent) == before
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
 @pytest.mark.parametrize("output", ["sizes.mgf", "sizes.vtu", "mesh.msh", "report.json"])
 def test_a_read_only_directory_is_told(ball, output):
     folder, other = ball.parent / "closed", ball.parent / "open"
@@ -233,6 +232,8 @@ def test_a_read_only_directory_is_told(ball, output):
     nobody = 65534
 
     def become_nobody():
+        if os.geteuid() != 0:
+            return  # root may write anywhere, others may not
         os.setgroups([])
         os.setgid(nobody)
         os.setuid(nobody)
