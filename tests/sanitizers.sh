@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the tests under sanitizers: AddressSanitizer and UndefinedBehaviorSanitizer over those of core
-# and plugin, ThreadSanitizer over what several threads may do at once. No function of ours is
+# Runs the tests under sanitizers: AddressSanitizer and UndefinedBehaviorSanitizer over those of
+# core and plugin, ThreadSanitizer over what several threads may do at once. No function of ours is
 # exempted. Arguments: parts to run (address, python, thread), all if there are none; `python-all`
 # runs the Python tests that a usual run leaves out as well.
 set -euo pipefail
@@ -116,8 +116,8 @@ fi
 if wants python || wants python-all; then
   build "$address" address meshgrow meshgrow_program
   # Python, Gmsh and what they load are as they are: only our library and program are checked, from
-  # within, and nobody's leaks are counted. A usual run takes what fails, is cut off, damaged or odd,
-  # and what hands out memory of ours.
+  # within, and nobody's leaks are counted. A usual run takes what fails, is cut off, damaged or
+  # odd, and what hands out memory of ours.
   chosen='failing_passes|interrupted_passes|gmsh_faults|bad_input|odd_[a-z]+|lifecycle'
   chosen+='|premeshed_entities|mapped_surfaces|kinds_of_entities|sizes|views|arrays|saved_fields'
   chosen+='|serve|program|probe|report'
