@@ -2,13 +2,11 @@
 // nothing worse.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
@@ -18,6 +16,7 @@
 #include "mended_field.h"
 #include "random_facets.h"
 #include "sphere_field.h"
+#include "test_with_folder.h"
 
 namespace meshgrow {
 namespace {
@@ -27,20 +26,13 @@ namespace fs = std::filesystem;
 const Entity volume = {3, 1};
 
 /// A saved field, in a folder of its own, whose bytes can be changed where they stand.
-class CraftedField : public testing::Test {
+class CraftedField : public test::TestWithFolder {
  protected:
-  CraftedField() {
-    std::string name = (fs::temp_directory_path() / "crafted_fieldXXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~CraftedField() override { fs::remove_all(folder_); }
-
-  std::string path() const { return (folder_ / "field.mgf").string(); }
+  std::string path() const { return TestWithFolder::path("field.mgf"); }
 
   void save(const SizeField& field) {
     save_field(field, path());
-    std::ifstream file(path(), std::ios::binary);
-    bytes_ = {std::istreambuf_iterator<char>(file), {}};
+    bytes_ = test::bytes_of(path());
     group_ = field.parts().groups[0];
   }
 

@@ -1,7 +1,6 @@
 #include "field_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdint>
@@ -12,28 +11,25 @@
 #include <string>
 #include <vector>
 
+#include "ball_and_cube.h"
 #include "checked_blocks.h"
 #include "error.h"
 #include "graded_sphere.h"
 #include "random_facets.h"
+#include "test_with_folder.h"
 
 namespace meshgrow {
 namespace {
 
 namespace fs = std::filesystem;
 
-const Entity volume = {3, 1};
-const Entity surface = {2, 1};
-const Entity other_volume = {3, 2};
-const Entity other_surface = {2, 2};
+using test::other_surface;
+using test::other_volume;
+using test::surface;
+using test::volume;
 
-/// A ball and a cube beside it that share nothing.
-Topology ball_and_cube() {
-  Topology topology;
-  topology.add_entity(surface, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
-  topology.add_entity(volume, {surface}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
-  topology.add_entity(other_surface, {}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
-  topology.add_entity(other_volume, {other_surface}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
+Topology named_ball_and_cube() {
+  Topology topology = test::ball_and_cube();
   topology.add_physical_group({2, 5, "the \"wall\" ü", {surface}});
   return topology;
 }
@@ -52,7 +48,7 @@ SizeFunction mesh_function() {
 SizeField ball_field(std::size_t triangles, Evaluator evaluator = Evaluator::grid) {
   FieldOptions options;
   options.evaluator = evaluator;
-  SizeField field(ball_and_cube(), options);
+  SizeField field(named_ball_and_cube(), options);
   field.add(mesh_function());
   SizeFunction other = mesh_function();
   other.kind = Kind::fixed;
@@ -68,24 +64,8 @@ SizeField ball_field(std::size_t triangles, Evaluator evaluator = Evaluator::gri
   return field;
 }
 
-/// A folder of its own, gone at the end.
-class FieldFile : public testing::Test {
- protected:
-  FieldFile() {
-    std::string name = (fs::temp_directory_path() / "field_fileXXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~FieldFile() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
-};
-
-std::string read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using FieldFile = test::TestWithFolder;
+using test::bytes_of;
 
 void write(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
@@ -197,17 +177,17 @@ TEST_F(FieldFile, EqualFieldsMakeEqualFiles) {
   save_field(field, path("b.mgf"));
   save_field(load_field(path("a.mgf")), path("c.mgf"));
   save_field(ball_field(2000), path("d.mgf"));
-  const std::string bytes = read(path("a.mgf"));
+  const std::string bytes = bytes_of(path("a.mgf"));
   EXPECT_EQ(bytes.substr(0, 8), "\x89MGF\r\n\x1a\n");
   EXPECT_EQ(number_at(bytes, 16), bytes.size());
-  EXPECT_TRUE(bytes == read(path("b.mgf")));
-  EXPECT_TRUE(bytes == read(path("c.mgf")));
-  EXPECT_TRUE(bytes == read(path("d.mgf")));
+  EXPECT_TRUE(bytes == bytes_of(path("b.mgf")));
+  EXPECT_TRUE(bytes == bytes_of(path("c.mgf")));
+  EXPECT_TRUE(bytes == bytes_of(path("d.mgf")));
   EXPECT_TRUE(is_field_file(path("a.mgf")));
 }
 
 TEST_F(FieldFile, AFieldThatIsNotBuiltIsNotSaved) {
-  SizeField field(ball_and_cube());
+  SizeField field(named_ball_and_cube());
   field.add(mesh_function());
   EXPECT_THROW(save_field(field, path("a.mgf")), Error);
   EXPECT_FALSE(fs::exists(path("a.mgf")));
@@ -239,7 +219,7 @@ TEST_F(FieldFile, ForeignFilesGetOneSentence) {
 
 TEST_F(FieldFile, TruncatedFilesGetOneSentence) {
   save_field(ball_field(500), path("a.mgf"));
-  const std::string bytes = read(path("a.mgf"));
+  const std::string bytes = bytes_of(path("a.mgf"));
   for (std::size_t size = 8; size < bytes.size(); size = size < 100 ? size + 1 : size * 5 / 4) {
     write(path("cut.mgf"), bytes.substr(0, size));
     const std::string sentence = sentence_of_loading(path("cut.mgf"));
@@ -251,7 +231,7 @@ TEST_F(FieldFile, TruncatedFilesGetOneSentence) {
 
 TEST_F(FieldFile, AnotherVersionIsNamed) {
   save_field(ball_field(500), path("a.mgf"));
-  std::string bytes = read(path("a.mgf"));
+  std::string bytes = bytes_of(path("a.mgf"));
   bytes[8] = 2;
   write(path("a.mgf"), bytes);
   EXPECT_NE(sentence_of_loading(path("a.mgf")).find("version 2"), std::string::npos);
@@ -261,7 +241,7 @@ TEST_F(FieldFile, EveryDamagedByteIsNoticed) {
   const unsigned seed = 20261125;
   const std::string good = path("a.mgf");
   save_field(ball_field(500), good);
-  const std::string bytes = read(good);
+  const std::string bytes = bytes_of(good);
   ASSERT_EQ(sentence_of_using(good), "");
   test::Random random(seed);
   const std::size_t directory = number_at(bytes, 24);
@@ -279,7 +259,7 @@ TEST_F(FieldFile, EveryDamagedByteIsNoticed) {
     EXPECT_TRUE(!sentence.empty() || is_gap) << place << ", seed " << seed;
     if (sentence.empty()) {
       // In a gap: written again as zeros.
-      EXPECT_TRUE(read(path("damaged.mgf.again")) == bytes) << place << ", seed " << seed;
+      EXPECT_TRUE(bytes_of(path("damaged.mgf.again")) == bytes) << place << ", seed " << seed;
     }
     fs::remove(path("damaged.mgf.again"));
   }
@@ -287,7 +267,7 @@ TEST_F(FieldFile, EveryDamagedByteIsNoticed) {
 
 TEST_F(FieldFile, BlocksAreCheckedWhenTouchedAndNotBefore) {
   save_field(ball_field(20000), path("a.mgf"));
-  const std::string bytes = read(path("a.mgf"));
+  const std::string bytes = bytes_of(path("a.mgf"));
   const SizeField whole = load_field(path("a.mgf"));
   const SizeField::Parts parts = whole.parts();
   const StoredArray<GridCorners>& corners = parts.groups[0].grid->stored().corners;

@@ -1,13 +1,9 @@
 // What holds of combined size functions, in memory and in files.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,6 +15,7 @@
 #include "random_models.h"
 #include "size_field.h"
 #include "size_function_text.h"
+#include "test_with_folder.h"
 
 namespace meshgrow {
 namespace {
@@ -334,25 +331,20 @@ TEST(SizeFieldProperties, SmallestSizesAreThoseOfSomeEntityAndOfNoneSmaller) {
 
 // ==== Files
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using SizeFieldFileProperties = test::TestWithFolder;
 
-TEST(SizeFieldProperties, AnswerTheSameToTheBitFromAFile) {
-  std::string folder = (std::filesystem::temp_directory_path() / "propertiesXXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+TEST_F(SizeFieldFileProperties, AnswerTheSameToTheBit) {
   test::for_random_rounds(40, [&](Random& random) {
     const Topology topology = row_of_cubes();
     const std::vector<Drawn> functions = random_functions(random, topology);
     SCOPED_TRACE(text_of(functions));
     const SizeField field = field_of(
         functions, test::random_index(random, 3) == 0 ? Evaluator::exact : Evaluator::grid);
-    const std::string path = folder + "/field.mgf";
+    const std::string path = this->path("field.mgf");
     save_field(field, path);
     const SizeField loaded = load_field(path);
     save_field(loaded, path + ".again");
-    ASSERT_TRUE(bytes_of(path + ".again") == bytes_of(path));
+    ASSERT_TRUE(test::bytes_of(path + ".again") == test::bytes_of(path));
     for (std::size_t i = 0; i < functions.size(); ++i) {
       EXPECT_EQ(size_function_text(loaded.functions()[i]),
                 size_function_text(field.functions()[i]));
@@ -372,7 +364,6 @@ TEST(SizeFieldProperties, AnswerTheSameToTheBitFromAFile) {
       }
     }
   });
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

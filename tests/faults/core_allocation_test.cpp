@@ -1,15 +1,14 @@
 // Memory that runs out at each step of what the core does.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "ball_and_cube.h"
 #include "failing_steps.h"
 #include "field_cells.h"
 #include "field_file.h"
@@ -18,26 +17,17 @@
 #include "meshing_plan.h"
 #include "size_field.h"
 #include "size_function_text.h"
+#include "test_with_folder.h"
 
 namespace meshgrow {
 namespace {
 
 namespace fs = std::filesystem;
 using test::fail_at_each_step;
-
-const Entity volume = {3, 1};
-const Entity surface = {2, 1};
-const Entity other_volume = {3, 2};
-const Entity other_surface = {2, 2};
-
-Topology two_boxes() {
-  Topology topology;
-  topology.add_entity(surface, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
-  topology.add_entity(volume, {surface}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
-  topology.add_entity(other_surface, {}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
-  topology.add_entity(other_volume, {other_surface}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
-  return topology;
-}
+using test::other_surface;
+using test::other_volume;
+using test::surface;
+using test::volume;
 
 SizeFunction mesh_function(double growth_rate = 1.2) {
   SizeFunction function;
@@ -61,7 +51,7 @@ SizeField field_of(std::size_t triangles, int threads) {
   options.evaluator = Evaluator::grid;
   options.tolerance = 0.2;
   options.threads = threads;
-  SizeField field(two_boxes(), options);
+  SizeField field(test::ball_and_cube(), options);
   field.add(mesh_function());
   SizeFunction fixed = mesh_function();
   fixed.kind = Kind::fixed;
@@ -142,7 +132,7 @@ TEST(OutOfMemory, AFieldThatCannotBeChangedIsAsBefore) {
 }
 
 TEST(OutOfMemory, ProximityIsAsBefore) {
-  SizeField old(two_boxes());
+  SizeField old(test::ball_and_cube());
   SizeFunction function = mesh_function();
   function.kind = Kind::proximity;
   function.cells_per_gap = 3.0;
@@ -173,29 +163,14 @@ TEST(OutOfMemory, ProximityIsAsBefore) {
       [&before](SizeField& field) { EXPECT_EQ(sizes_of(field), before); });
 }
 
-/// A folder of its own, gone at the end.
-class OutOfMemoryWithFiles : public testing::Test {
- protected:
-  OutOfMemoryWithFiles() {
-    std::string name = (fs::temp_directory_path() / "allocationXXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~OutOfMemoryWithFiles() override { fs::remove_all(folder_); }
-
-  static std::string read(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
-  fs::path folder_;
-};
+using OutOfMemoryWithFiles = test::TestWithFolder;
 
 TEST_F(OutOfMemoryWithFiles, ASavedFieldStaysAsItWas) {
   const SizeField old = field_of(80, 1);
   const SizeField other = field_of(200, 1);
-  const std::string path = (folder_ / "a.mgf").string();
+  const std::string path = this->path("a.mgf");
   save_field(old, path);
-  const std::string bytes = read(path);
+  const std::string bytes = test::bytes_of(path);
   const auto make = [&] {
     save_field(old, path);
     return 0;
@@ -203,7 +178,7 @@ TEST_F(OutOfMemoryWithFiles, ASavedFieldStaysAsItWas) {
   fail_at_each_step(
       400, make, [&](int) { save_field(other, path); },
       [&](int) {
-        EXPECT_TRUE(read(path) == bytes);
+        EXPECT_TRUE(test::bytes_of(path) == bytes);
         EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
       });
   const std::vector<double> before = sizes_of(old);

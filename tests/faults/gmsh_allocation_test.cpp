@@ -2,7 +2,6 @@
 // That of Gmsh itself does not: what it does then is not ours.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "failing_steps.h"
 #include "gmsh_api.h"
 #include "meshgrow.h"
+#include "test_with_folder.h"
 
 namespace meshgrow {
 namespace {
@@ -73,20 +73,15 @@ std::vector<double> answers_of(meshgrow_field* field) {
 }
 
 /// Two boxes whose surfaces are meshed.
-class OutOfMemoryInGmsh : public testing::Test {
+class OutOfMemoryInGmsh : public test::TestWithFolder {
  protected:
   OutOfMemoryInGmsh() {
-    std::string name = (fs::temp_directory_path() / "allocationXXXXXX").string();
-    folder_ = mkdtemp(name.data());
     std::ofstream(folder_ / "model.geo") << two_boxes;
     gmsh::initialize({"test", "-v", "0", "-nt", "1"});
     gmsh::open((folder_ / "model.geo").string());
     gmsh::generate(2);
   }
-  ~OutOfMemoryInGmsh() override {
-    gmsh::finalize();
-    fs::remove_all(folder_);
-  }
+  ~OutOfMemoryInGmsh() override { gmsh::finalize(); }
 
   /// What is Gmsh's, and must be as before.
   static std::vector<double> state() {
@@ -103,8 +98,6 @@ class OutOfMemoryInGmsh : public testing::Test {
     result.insert(result.end(), nodes.coordinates.begin(), nodes.coordinates.end());
     return result;
   }
-
-  fs::path folder_;
 };
 
 TEST_F(OutOfMemoryInGmsh, AFieldIsMadeOrNot) {

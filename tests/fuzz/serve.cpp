@@ -9,32 +9,13 @@
 #include "fuzz_target.h"
 #include "size_field.h"
 #include "size_server.h"
+#include "sphere_field.h"
 
 namespace meshgrow::fuzz {
 namespace {
 
-SizeField make_field() {
-  Topology topology;
-  topology.add_entity({2, 1}, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
-  topology.add_entity({3, 1}, {{2, 1}}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
-  FieldOptions options;
-  options.evaluator = Evaluator::exact;
-  SizeField made(topology, options);
-  SizeFunction function;
-  function.sources = {{2, 1}};
-  function.attachments = {{3, 1}};
-  function.size_limit = 1.0;
-  made.add(function);
-  FacetedSource source;
-  source.entity = {2, 1};
-  source.triangles = {{Vec3(0, 0, 1), Vec3(0.5, 0, 0), Vec3(0, 0.2, 0)}};  // few, to be fast
-  made.set_sources(0, {source});
-  made.build_trees();
-  return made;
-}
-
 const SizeField& field() {
-  static const SizeField made = make_field();
+  static const SizeField made = test::sphere_field(12, Evaluator::exact);
   return made;
 }
 

@@ -15,3 +15,15 @@ def run_child(code, **environment):
                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
     assert child.returncode == 0, "exit code %d\n%s" % (child.returncode, child.stderr[-2000:])
     return child.stdout.splitlines()
+
+
+def told(call, *arguments):
+    """Within a child: prints the sentence of the error that a call raises, or that there is none."""
+    import meshgrow  # the child loads gmsh first
+
+    try:
+        call(*arguments)
+    except meshgrow.Error as error:
+        print("Error:", error)
+    else:
+        print("no error")

@@ -11,6 +11,7 @@ from child import run_child
 HEAD = """
 import gc, gmsh, meshgrow
 import models
+from child import told
 from meshes import boundary, element_count, has_elements, premesh
 
 
@@ -30,15 +31,6 @@ def elements():
     gmsh.model.mesh.clear()
     gmsh.model.mesh.generate(2)
     return sum(element_count(e) for e in gmsh.model.getEntities(2))
-
-
-def told(call, *arguments):
-    try:
-        call(*arguments)
-    except meshgrow.Error as error:
-        print("Error:", error)
-    else:
-        print("no error")
 
 
 start()

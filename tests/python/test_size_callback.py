@@ -284,6 +284,7 @@ def test_current_model_is_restored_when_generate_fails():
 HEAD = """
 import gc, gmsh, meshgrow
 import models
+from child import told
 from meshes import element_count
 
 
@@ -302,15 +303,6 @@ def elements_of_a_new_model():
     model = models.square()
     gmsh.model.mesh.generate(2)
     return element_count(model.face)
-
-
-def told(call, *arguments):
-    try:
-        call(*arguments)
-    except meshgrow.Error as error:
-        print("Error:", error)
-    else:
-        print("no error")
 
 
 start()
