@@ -7,7 +7,10 @@
  *
  * Entities are passed as in Gmsh's own C API: arrays of dim, tag, dim, tag, … whose length `…_n`
  * counts the ints. Sizes and coordinates are in model units. Functions that can fail return 0 on
- * success and 1 on failure; meshgrow_last_error() then gives one sentence. Nothing is thrown.
+ * success and 1 on failure; meshgrow_last_error() then gives one sentence. Those that return a text
+ * (char*) return NULL on failure; every such text is to be freed by meshgrow_free. Nothing is
+ * thrown. What fails changes nothing, but for meshgrow_field_generate, which keeps what was meshed
+ * before the error.
  *
  * libgmsh is found at run time: the one loaded in the process, else the file named by the
  * environment variable MESHGROW_GMSH_LIB, else the usual names. 4.8 or later is needed.
@@ -102,16 +105,17 @@ MESHGROW_API int meshgrow_field_add(meshgrow_field* field, const char* text);
 /* The functions have names: `name inner` or `name "inner wall"` in the line of text, else a number
  * in the order of adding, "1" for the first. */
 MESHGROW_API size_t meshgrow_field_function_count(const meshgrow_field* field);
-/* The name of the function with this index, from 0; NULL on failure. To be freed by
- * meshgrow_free. */
+/* The name of the function with this index, from 0. */
 MESHGROW_API char* meshgrow_field_function_name(const meshgrow_field* field, size_t index);
 /* The same for its line of text. */
 MESHGROW_API char* meshgrow_field_function_text(const meshgrow_field* field, size_t index);
+/* Gives a function another name, which must be free and no number. */
 MESHGROW_API int meshgrow_field_rename(meshgrow_field* field, const char* name,
                                        const char* new_name);
 /* Puts another definition, a line of text, in the place of a function; only what it acts on is
  * built anew. */
 MESHGROW_API int meshgrow_field_modify(meshgrow_field* field, const char* name, const char* text);
+/* Takes a function away. */
 MESHGROW_API int meshgrow_field_remove(meshgrow_field* field, const char* name);
 
 /* Saves the field, with grids unless the evaluator is exact, to a file (.mgf) that is complete or
@@ -143,7 +147,8 @@ MESHGROW_API int meshgrow_field_set_progress(meshgrow_field* field,
 MESHGROW_API int meshgrow_field_set_stop(meshgrow_field* field, int (*wants_stop)(void* data),
                                          void* data);
 
-/* Reads the sources as they are meshed now and builds the grids. */
+/* Reads the sources as they are meshed now and builds trees, and grids where they pay (see
+ * "evaluator"). If it fails, the field answers as before. */
 MESHGROW_API int meshgrow_field_refresh(meshgrow_field* field);
 
 /* Registers the field as Gmsh's size callback (after a refresh), or takes it away. */
@@ -152,10 +157,14 @@ MESHGROW_API int meshgrow_field_unregister(meshgrow_field* field);
 
 /* Meshes the model up to dimension `dim` with Gmsh's own algorithms, sources first. What had a mesh
  * before keeps it: node tags, coordinates to the bit, connectivity. With `remesh` != 0, all that is
- * no source of a mesh size function loses its mesh first. */
+ * no source of a mesh size function loses its mesh first.
+ *
+ * On failure, also when stopped, what was meshed before is kept, but for curves of mapped surfaces
+ * that were not adjusted to each other yet. Premeshed entities, Gmsh's options, visibility and
+ * current model are as before, and the next call goes on. */
 MESHGROW_API int meshgrow_field_generate(meshgrow_field* field, int dim, int remesh);
 
-/* The passes that this would make, as text; NULL on failure. To be freed by meshgrow_free. */
+/* The passes that this would make, as text. */
 MESHGROW_API char* meshgrow_field_plan(meshgrow_field* field, int dim);
 
 /* The same as JSON: [{"dim": …, "attached": …, "entities": …, "functions": …, "sources": …}, …]. */
@@ -207,8 +216,8 @@ MESHGROW_API int meshgrow_field_write_view(meshgrow_field* field, const char* pa
  * JSON: {"size": …, "exact_size": …, "interpolated_size": … or null without a grid, "rule":
  * "facet", "limit", "inside source" or "nothing", "function": {"index": …, "name": …, "kind": …,
  * "text": …}, "facet": {"entity": [dim, tag], "element": tag or null, "corners": […], "start_size":
- * …, "growth_rate": …, "slope": …, "distance": …} or null, "entity": …, "point": …}. NULL on
- * failure. To be freed by meshgrow_free. The first call reads the sources. */
+ * …, "growth_rate": …, "slope": …, "distance": …} or null, "entity": …, "point": …}. The first call
+ * reads the sources. */
 MESHGROW_API char* meshgrow_field_probe_json(meshgrow_field* field, int dim, int tag,
                                              const double* point);
 
@@ -231,7 +240,7 @@ MESHGROW_API double meshgrow_field_callback(int dim, int tag, double x, double y
 MESHGROW_API double meshgrow_field_callback_4_8(int dim, int tag, double x, double y, double z,
                                                 void* field);
 
-/* Functions, groups and grids as text; NULL on failure. To be freed by meshgrow_free. */
+/* Functions, groups and grids as text for people. */
 MESHGROW_API char* meshgrow_field_summary(meshgrow_field* field);
 
 /* The same as JSON: {"functions": […], "groups": [{"entities": …, "grid": …}, …], "seconds":
@@ -240,8 +249,7 @@ MESHGROW_API char* meshgrow_field_summary(meshgrow_field* field);
 MESHGROW_API char* meshgrow_field_summary_json(meshgrow_field* field);
 
 /* Gradation and quality of the current model's mesh of dimension `dim` (2 or 3) as JSON, restricted
- * to `entities` unless there are none; against the sizes of `field` unless it is NULL. NULL on
- * failure. To be freed by meshgrow_free. */
+ * to `entities` unless there are none; against the sizes of `field` unless it is NULL. */
 MESHGROW_API char* meshgrow_report_json(int dim, const int* entities, size_t entities_n,
                                         meshgrow_field* field);
 
@@ -252,13 +260,13 @@ MESHGROW_API int meshgrow_report_value(const char* report_json, const char* name
 /* At most `count` places that decide the number `name` of that report ("ratio_99", "gamma_min", …),
  * those with the largest values first if `largest` != 0, else those with the smallest, as JSON:
  * [{"value": …, "elements": [tags of Gmsh], "entity": [dim, tag], "point": [x, y, z]}, …]. For
- * "length_share_good", edges that fit worst come first unless `largest` != 0; none for "elements".
- * NULL on failure. To be freed by meshgrow_free. */
+ * "length_share_good", edges that fit worst come first unless `largest` != 0; none for
+ * "elements". */
 MESHGROW_API char* meshgrow_report_worst_json(int dim, const int* entities, size_t entities_n,
                                               meshgrow_field* field, const char* name, int largest,
                                               size_t count);
 
-/* The table of several such reports: JSON array of {"name": …, "report": …}. */
+/* A table for people of several such reports, a JSON array of {"name": …, "report": …}. */
 MESHGROW_API char* meshgrow_report_table(const char* reports_json);
 
 #ifdef __cplusplus

@@ -30,8 +30,8 @@
 ///
 /// Entities are pairs of dimension and tag, as in gmsh.h. Coordinates and sizes are in model units,
 /// angles in degrees. What goes wrong is thrown as `meshgrow::Error`: one sentence that names the
-/// entity and the remedy. Thread safety is said at each function where it is more than Gmsh's: one
-/// thread at a time.
+/// entity and the remedy. What throws changes nothing, but for `generate`. Thread safety is said at
+/// each function where it is more than Gmsh's: one thread at a time.
 namespace meshgrow {
 
 // What is declared here has names of its own for the linker, apart from the library's inner
@@ -111,6 +111,7 @@ enum class Between {
   both = MESHGROW_BETWEEN_BOTH
 };
 
+/// Of a size field, for its constructor.
 struct Options {
   /// Relative tolerance of the background grids: a size is at most 1 + tolerance times the exact
   /// one.
@@ -236,7 +237,9 @@ class SizeField {
   void modify(const std::string& name, const std::string& text) {
     check(meshgrow_field_modify(c_field(), name.c_str(), text.c_str()));
   }
+  /// Takes a function away.
   void remove(const std::string& name) { check(meshgrow_field_remove(c_field(), name.c_str())); }
+  /// Gives a function another name, which must be free and no number.
   void rename(const std::string& name, const std::string& new_name) {
     detail::check(meshgrow_field_rename(c_field(), name.c_str(), new_name.c_str()));
   }
@@ -253,7 +256,8 @@ class SizeField {
 
   /// Meshes the model up to dimension `dim` with Gmsh's own algorithms, sources first. What had a
   /// mesh before keeps it: node tags, coordinates to the bit, connectivity. With `remesh`, all that
-  /// is no source of a mesh size function loses its mesh first.
+  /// is no source of a mesh size function loses its mesh first. On errors, what was meshed before
+  /// is kept (see meshgrow_field_generate), and the next call goes on.
   void generate(int dim = 3, bool remesh = false) {
     state_->raise_again();
     check(meshgrow_field_generate(c_field(), dim, remesh ? 1 : 0));
@@ -287,9 +291,11 @@ class SizeField {
   /// Reads the sources as they are meshed now and becomes Gmsh's size callback; you mesh, with
   /// gmsh::model::mesh::generate. (`register` is a word of C++.)
   void register_callback() { check(meshgrow_field_register(c_field())); }
+  /// Is Gmsh's size callback no more.
   void unregister_callback() { detail::check(meshgrow_field_unregister(c_field())); }
 
-  /// Reads the sources as they are meshed now and builds the grids.
+  /// Reads the sources as they are meshed now and builds trees, and grids where they pay. If it
+  /// throws, the field answers as before.
   void refresh() { check(meshgrow_field_refresh(c_field())); }
 
   /// The field as a size callback of Gmsh: the smaller one of `proposed` and the size asked for on
@@ -504,6 +510,7 @@ class Report {
     detail::check(meshgrow_report_value(json_.c_str(), name.c_str(), &result));
     return result;
   }
+  /// The report itself.
   const std::string& json() const { return json_; }
 
  private:

@@ -172,12 +172,14 @@ void ModelField::create_defaults(std::vector<Entity> attachments, double growth_
   function.growth_rate = growth_rate;
   function.size_limit = size_limit;
   function.min_size = min_size;
-  add(function);
-  function.kind = Kind::proximity;
-  function.between = GapsBetween::both;
-  if (!gap_regions(function, topology).empty()) {
-    add(std::move(function));
-  }
+  all_or_nothing([&] {
+    add(function);
+    function.kind = Kind::proximity;
+    function.between = GapsBetween::both;
+    if (!gap_regions(function, topology).empty()) {
+      add(std::move(function));
+    }
+  });
 }
 
 }  // namespace meshgrow

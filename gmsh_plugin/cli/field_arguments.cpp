@@ -63,7 +63,7 @@ void add_field_options(CLI::App& command, FieldArguments& arguments) {
       ->capture_default_str();
   command
       .add_option("--max-cells", arguments.max_cells,
-                  "Most cells of a background grid; 0: as many as fit into memory")
+                  "Most cells of a background grid; 0: as many as half of the memory holds")
       ->check(wrong_max_cells);
   command
       .add_option("--evaluator", arguments.evaluator,

@@ -15,7 +15,7 @@ struct FieldArguments {
   std::string file;
   double defaults_limit = 0.0;  ///< size limit of the default functions; 0: none of them
   double tolerance = 0.05;
-  double max_cells = 0.0;  ///< of a background grid; 0: as many as fit into memory
+  double max_cells = 0.0;  ///< of a background grid; 0: as half of the memory holds
   std::string evaluator = "auto";
   bool strict = false;
   bool calibrate = false;

@@ -26,7 +26,9 @@ class SizeField:
     """Mesh sizes of Gmsh's current model, from its size functions.
 
     Entities are lists of ``(dim, tag)`` as in gmsh. Lengths are in model units. Raises
-    :class:`meshgrow.Error` with one sentence when something is wrong.
+    :class:`meshgrow.Error` with one sentence when something is wrong; what raises changes nothing,
+    but for :meth:`generate`, which keeps what was meshed before. One thread at a time, as Gmsh, but
+    for :meth:`size`, :meth:`exact_size`, :meth:`smallest_size` and the field as a size callback.
 
     tolerance
         relative tolerance of the background grids: a size is at most ``1 + tolerance`` times exact.
@@ -244,6 +246,10 @@ class SizeField:
         Mesh.ElementOrder is 2 or more, elements of first order get mid nodes beside their own. With
         ``remesh``, all that is no source of a mesh size function loses its mesh first; discrete
         entities keep theirs.
+
+        After an error or Ctrl-C, what was meshed before is kept, but for curves of mapped surfaces
+        that were not adjusted to each other yet; options, visibility and premeshed entities are as
+        before, and the next call goes on.
         """
         dim = operator.index(dim)
         self._raised.raise_again()  # of a callback in Gmsh's own generate()
@@ -287,7 +293,8 @@ class SizeField:
         check(lib.meshgrow_field_unregister(self._handle))
 
     def refresh(self) -> None:
-        """Reads the sources as they are meshed now and builds the grids."""
+        """Reads the sources as they are meshed now and builds trees, and grids where they pay. If
+        it raises, the field answers as before."""
         self._call(lib.meshgrow_field_refresh)
 
     def __call__(self, dim: int, tag: int, x: float, y: float, z: float,
@@ -351,7 +358,8 @@ class SizeField:
         """
         return add_view(self._call, name, kind, entity, plane, resolution)
 
-    def write_view(self, path: str, entity: Optional[DimTag] = None) -> int:
+    def write_view(self, path: Union[str, os.PathLike[str]],
+                   entity: Optional[DimTag] = None) -> int:
         """Writes the field into a file that other programs read; returns how many cells it has.
 
         By the ending of ``path``: ``.vtu`` (ParaView: the cells of the background grid), ``.pos``

@@ -122,6 +122,7 @@ def version() -> str:
 
 
 def raise_last_error() -> NoReturn:
+    """Raises the sentence of the last failure in this thread."""
     raise Error(lib.meshgrow_last_error().decode(errors="replace"))
 
 

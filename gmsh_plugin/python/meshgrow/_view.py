@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
@@ -55,7 +55,8 @@ def add_view(call: Callable[..., None], name: str, kind: str, entity: Optional[D
     return tag.value
 
 
-def write_view(call: Callable[..., None], path: str, entity: Optional[DimTag]) -> int:
+def write_view(call: Callable[..., None], path: Union[str, os.PathLike[str]],
+               entity: Optional[DimTag]) -> int:
     """See SizeField.write_view."""
     cells = ctypes.c_size_t()
     call(lib.meshgrow_field_write_view, c_path(path), *_dim_tag(entity), ctypes.byref(cells))
