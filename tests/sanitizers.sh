@@ -91,7 +91,7 @@ if wants address; then
   long_ones='BackgroundGrid.ManySmallFacets*:BackgroundGrid.KeepsItsPromises*'
   long_ones+=':BackgroundGrid.IsTheSameToTheBit*:BackgroundGrid.GrowthRateOneAmongOthers'
   long_ones+=':Tolerances/*/2_percent:Tolerances/*/5_percent'
-  long_ones+=':*FacetTreeOf.SizeEqualsBruteForce/mixed'
+  long_ones+=':*FacetTreeOf.SizeEqualsBruteForce/mixed:*FacetTreeOf.SizeEqualsBruteForce/triangles'
   long_ones+=':FacetTree.SizeEqualsBruteForceForAnyNumber*:FacetTree.TenThousandIdenticalFacets'
   long_ones+=':Facet.DistanceEqualsTheReference*:IntervalMatching.SystemsOfSidesOfSeveral*'
   long_ones+=':IntervalMatching.ADemandThatGrows*:ProximityStartSizes.TruncatedWedge*'
