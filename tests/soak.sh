@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Meshes random models with both generations of Gmsh, checks each, and sums up.
 #
-#   tests/soak.sh [count] [first seed]    1000 models from seed 1 on: about an hour on two idle cores
+#   tests/soak.sh [count] [first seed]    1000 models from seed 1 on
 #
+# Takes half a second of the processor for most models, and up to a minute for those that fail.
 # Results are lines in build/soak; run it again to go on where it was stopped. It fails where the
 # library failed, changed what was meshed before, or left a mesh that is not valid.
 set -euo pipefail

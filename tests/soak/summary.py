@@ -21,8 +21,8 @@ def reason(failure):
     alone = [failure[mode] for mode in ("plain", "callback") if mode in failure]
     if any(other["status"] in ("gmsh", "crash", status) for other in alone):
         return "Gmsh fails in its own order as well, with sizes alike", True
-    if status == "error" and message.startswith("Gmsh gave "):
-        return "Gmsh has to split a curve that has a mesh: refused", True
+    if message.startswith("Gmsh gave ") and failure.get("meshed_before", True):
+        return "Gmsh would have to split a curve that was meshed before: refused", True
     if status == "error" and failure.get("same_faces") and "Gmsh:" in message:
         return "Gmsh fails alone as well from the meshes that it made of the faces", True
     return status, False

@@ -8,6 +8,7 @@ processor (not of the clock: that would depend on what else runs), then SIGXCPU 
 import ctypes
 import json
 import os
+import re
 import resource
 import signal
 import sys
@@ -81,6 +82,8 @@ def mesh_by_field(model):
     result["premeshed"] = len(before.meshes)
     if result["status"] == "error":
         result["same_faces"] = fails_on_same_faces()
+        named = re.findall(r"Curve (\d+)", result["message"].partition(" other elements")[0])
+        result["meshed_before"] = all((1, int(tag)) in before.meshes for tag in named)
     if result["status"] == "meshed":
         result["invalid"] = invalid()
         result["flat"] = flat_tetrahedra()
