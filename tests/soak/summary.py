@@ -47,7 +47,7 @@ def cause(volume, words):
     for place, text in (("longer", "faces are coarser than the volume's functions ask for"),
                         ("shorter", "faces are finer than the volume's functions ask for")):
         there = facts[place]
-        if there["of_bad"] > max(0.5, there["of_all"] + 0.2):
+        if there["of_bad"] > max(0.5, min(0.9, there["of_all"] + 0.2)):
             return text
     if fastest_growth(volume["volume"], words) >= FAST:
         return "a growth rate of %g or more is asked for" % FAST
