@@ -289,6 +289,7 @@ void expect_promises_kept(const BackgroundGrid& grid, double tolerance, std::siz
 }
 
 void expect_same_bits(double a, double b, const Vec3& p) {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): to the bit is what is wanted
   ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0) << a << " and " << b << ' ' << point_text(p);
 }
 

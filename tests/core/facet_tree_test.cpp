@@ -306,7 +306,8 @@ TEST(FacetTree, AFacetBeyondAllMeasureLeavesTheOthersAsTheyAre) {
     SCOPED_TRACE(far);
     SizedFacets facets;
     for (int i = 0; i < 40; ++i) {
-      facets.push_back({Facet::point({0.25 * (i % 4), 0.25 * (i / 4), 0.0}), 0.1 + 0.01 * i, 0.2});
+      const int row = i / 4;
+      facets.push_back({Facet::point({0.25 * (i % 4), 0.25 * row, 0.0}), 0.1 + 0.01 * i, 0.2});
     }
     facets.push_back({Facet::triangle({0, far, 0}, {0, 1, 0}, {1, 0, -far}), 0.2, 0.2});
     const FacetTree tree(facets);

@@ -126,7 +126,7 @@ class TreeKernels : public testing::TestWithParam<const char*> {
     }
   }
 
-  Cell random_cell(const Tree& tree, Random& random) {
+  static Cell random_cell(const Tree& tree, Random& random) {
     Cell cell;
     cell.centre = test::random_query(random, tree.facets, test::cube(1.0));
     cell.half_edge = test::log_uniform(random, 1e-3, 0.5);

@@ -24,8 +24,7 @@ void write(const fs::path& path, const std::string& bytes) {
 void write_texts(const fs::path& folder) {
   const std::vector<std::string> texts = {
       "mesh source Surface{7} attach Volume{2} growth 1.2 limit 2 quad_size sides",
-      "fixed source Curve{1,4:6},Point{:} attach Physical Surface{\"inlet\"} size 0.1 growth 1.2 "
-      "limit 2 name \"inner wall\"",
+      "fixed source Curve{1,4:6} attach Physical Surface{\"in\"} size 0.1 limit 2 name \"a b\"",
       "curvature source Surface{:} attach Volume{1} angle 18 growth 1.2 limit 2 min 0.01",
       "proximity source Volume{1} attach Volume{:} cells 3 between both growth 1.2 limit 2 name a",
       "fixed source Line{1} attach Physical Surface{outer wall, 3} size 1e-3 growth +1.5 limit 9",

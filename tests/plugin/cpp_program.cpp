@@ -258,9 +258,7 @@ void reports_are_read() {
   expect_in("a \"box\" \\ of mine", meshgrow::report_table({{name, report}, {"b", report}}));
 }
 
-}  // namespace
-
-int main() {
+int run() {
   errors_are_thrown();
   version_is_that_of_the_header();
   gmsh::initialize();
@@ -280,4 +278,15 @@ int main() {
     std::printf("C++ program: all good with meshgrow %s\n", meshgrow::version().c_str());
   }
   return failures;
+}
+
+}  // namespace
+
+int main() {
+  try {
+    return run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "C++ program: %s\n", error.what());
+    return 1;
+  }
 }
