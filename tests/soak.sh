@@ -28,6 +28,6 @@ MESHGROW_GMSH_LIB=$libgmsh_newest "$python_newest" tests/soak/summary.py "$debia
   status=1
 
 say "Memory that models leave behind"
-MESHGROW_GMSH_LIB=$libgmsh_debian "$python_debian" tests/soak/memory.py
-MESHGROW_GMSH_LIB=$libgmsh_newest "$python_newest" tests/soak/memory.py
+MESHGROW_GMSH_LIB=$libgmsh_debian "$python_debian" tests/soak/memory.py || status=1
+MESHGROW_GMSH_LIB=$libgmsh_newest "$python_newest" tests/soak/memory.py || status=1
 exit $status
