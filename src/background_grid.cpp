@@ -21,11 +21,6 @@ constexpr double fewest_max_cells = 8.0;
 
 constexpr std::uint32_t last_step = (1u << max_grid_depth) - 1;
 
-/// No built grid has such cells, but a file may say so.
-[[noreturn]] void fail_too_deep() {
-  throw Error("Cells of a background grid are divided without end: save the field again.");
-}
-
 void check(const GridOptions& options) {
   check_tolerance(options.tolerance);
   check_max_cells(static_cast<double>(options.max_cells));
@@ -164,6 +159,10 @@ double BackgroundGrid::size(const Vec3& p, bool& interpolated) const {
   }
   interpolated = kind_of(spot.node) == NodeKind::interpolated;
   return leaf_size(spot, p);
+}
+
+void BackgroundGrid::fail_too_deep() {
+  throw Error("Cells of a background grid are divided without end: save the field again.");
 }
 
 std::size_t BackgroundGrid::sizes(const Vec3* points, std::size_t count, double* sizes) const {

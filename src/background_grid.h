@@ -109,6 +109,8 @@ class BackgroundGrid {
   double leaf_size(const Spot& spot, const Vec3& p) const;
   FacetTree::Entries exact_entries(NodeCode leaf) const;
   void set_steps();
+  /// No built grid has cells beyond the greatest depth, but a file may say so.
+  [[noreturn]] static void fail_too_deep();
 
   std::shared_ptr<const FacetTree> tree_;
   StoredGrid stored_;

@@ -23,12 +23,18 @@ constexpr double farthest_for_float = 1e15;
 /// this, float cannot tell those from nothing.
 constexpr float smallest_for_float = 1e-30f;
 
-bool float_suffices(const StoredTree& tree) {
-  if (tree.nodes.empty() || tree.largest_slope >= 1.0) {
-    return true;  // a tree of distances has no start sizes
+/// In units of the tree, rounded down; infinite without facets.
+float smallest_start_size_in(const StoredTree& tree) {
+  if (tree.nodes.empty()) {
+    return FacetTree::infinity;
   }
   const simd::WideNode& root = tree.nodes[0];
-  return *std::min_element(root.start_size, root.start_size + simd::lanes) >= smallest_for_float;
+  return *std::min_element(root.start_size, root.start_size + simd::lanes);
+}
+
+/// A tree of distances has no start sizes.
+bool float_suffices(const StoredTree& tree) {
+  return tree.largest_slope >= 1.0 || smallest_start_size_in(tree) >= smallest_for_float;
 }
 
 }  // namespace
@@ -198,6 +204,10 @@ void FacetTree::sizes(const Vec3* points, std::size_t count, double upper_bound,
       sizes[first + i] = found[i].size;
     }
   }
+}
+
+double FacetTree::smallest_start_size() const {
+  return smallest_start_size_in(stored_) * stored_.unit;
 }
 
 bool FacetTree::is_near_enough_for_float(const Vec3& p) const {

@@ -142,6 +142,8 @@ class FacetTree {
   double unit() const { return stored_.unit; }
   const Vec3& centre() const { return stored_.centre; }
   double largest_slope() const { return stored_.largest_slope; }
+  /// Of all facets, rounded down a little, model units; infinite without facets.
+  double smallest_start_size() const;
   /// Farther away, or with facets so far apart that the smallest are nothing in float beside that,
   /// float cannot rule anything out, and only `size` and `sizes` may be asked.
   bool is_near_enough_for_float(const Vec3& p) const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "parallel.h"
 
@@ -30,14 +29,6 @@ std::array<GridCell, 8> children_of(const GridCell& cell, const Lattice& lattice
   return children;
 }
 
-double smallest_start_size(const FacetTree& tree) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const SizedFacet& facet : tree.facets()) {
-    smallest = std::min(smallest, facet.start_size);
-  }
-  return smallest;
-}
-
 }  // namespace
 
 GridBuilder::GridBuilder(const FacetTree& tree, const GridCube& cube, double size_limit,
@@ -47,8 +38,7 @@ GridBuilder::GridBuilder(const FacetTree& tree, const GridCube& cube, double siz
       size_limit_(size_limit),
       options_(options),
       tolerance_(options.tolerance - rounding_reserve * (1.0 + options.tolerance)),
-      max_cells_(options.max_cells > 0 ? options.max_cells : default_max_cells()),
-      smallest_start_size_(smallest_start_size(tree)) {
+      max_cells_(options.max_cells > 0 ? options.max_cells : default_max_cells()) {
   classifiers_.resize(
       static_cast<std::size_t>(options.threads > 0 ? options.threads : default_threads()));
 }
@@ -302,7 +292,7 @@ GridBuilder::NodeCode GridBuilder::append_undecided(const GridCell& cell,
                                                     const FacetTree::Smallest& ruling,
                                                     Nodes& nodes) const {
   const double change = std::sqrt(3.0) * cell.half_edge(cube_) * tree_.largest_slope();
-  const double least = std::max(smallest_start_size_, ruling.size - change);
+  const double least = std::max(tree_.smallest_start_size(), ruling.size - change);
   nodes.undecided_tolerance = std::max(nodes.undecided_tolerance, change / least);
   return grid_node(NodeKind::tree, 0);
 }

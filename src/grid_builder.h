@@ -80,7 +80,6 @@ class GridBuilder {
   Nodes nodes_;
   double tolerance_;
   std::size_t max_cells_;
-  double smallest_start_size_;
   int max_depth_ = max_grid_depth;
   bool is_limited_ = false;
   double told_ = 0.0;

@@ -1,7 +1,5 @@
 #include "background_grid.h"
 
-#include "error.h"
-
 namespace meshgrow {
 
 void BackgroundGrid::for_each_leaf(const std::function<void(const GridLeaf&)>& visit) const {
@@ -22,9 +20,8 @@ void BackgroundGrid::for_each_leaf(const std::function<void(const GridLeaf&)>& v
       visit(next.leaf);
       continue;
     }
-    // As no built grid is: a file may say so.
     if (next.leaf.depth >= max_grid_depth || ++blocks_seen >= stored_.blocks.size()) {
-      throw Error("Cells of a background grid are divided without end: save the field again.");
+      fail_too_deep();
     }
     const std::uint32_t half = 1u << (max_grid_depth - next.leaf.depth - 1);
     for (std::uint32_t i = 8; i-- > 0;) {

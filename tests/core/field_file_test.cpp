@@ -34,15 +34,10 @@ Topology named_ball_and_cube() {
   return topology;
 }
 
-SizeFunction mesh_function() {
-  SizeFunction function;
-  function.kind = Kind::mesh;
-  function.sources = {surface};
-  function.attachments = {volume};
-  function.growth_rate = 1.2345678901234567;
-  function.size_limit = 0.7;
-  return function;
-}
+constexpr double growth_rate = 1.2345678901234567;
+constexpr double size_limit = 0.7;
+
+SizeFunction mesh_function() { return test::mesh_in_ball(growth_rate, size_limit); }
 
 /// The sphere's mesh grows into the first volume; a fixed function is without effect in the second.
 SizeField ball_field(std::size_t triangles, Evaluator evaluator = Evaluator::grid) {
@@ -50,12 +45,7 @@ SizeField ball_field(std::size_t triangles, Evaluator evaluator = Evaluator::gri
   options.evaluator = evaluator;
   SizeField field(named_ball_and_cube(), options);
   field.add(mesh_function());
-  SizeFunction other = mesh_function();
-  other.kind = Kind::fixed;
-  other.start_size = 0.1;
-  other.sources = {other_surface};
-  other.attachments = {other_volume};
-  field.add(other);
+  field.add(test::fixed_in_cube(growth_rate, size_limit));
   FacetedSource source;
   source.entity = surface;
   source.triangles = test::graded_sphere(triangles, 10.0);

@@ -14,6 +14,7 @@
 
 #include "error.h"
 #include "random_facets.h"
+#include "short_names.h"
 
 namespace meshgrow {
 namespace {
@@ -113,19 +114,11 @@ Topology row_of_boxes(int count) {
 
 // ==== Plans as text
 
-std::string short_names(const Entities& entities) {
-  std::string result;
-  for (const Entity& entity : entities) {
-    result += std::string(1, "PCSV"[entity.dim]) + std::to_string(entity.tag) + ' ';
-  }
-  return result;
-}
-
 /// A line a pass, functions counted from 1: "0: C1 C2", "1: S1 by 1 2 from C1".
 std::string text(const Plan& plan) {
   std::string result;
   for (const MeshingPass& pass : plan) {
-    std::string line = std::to_string(pass.stage) + ": " + short_names(pass.entities);
+    std::string line = std::to_string(pass.stage) + ": " + test::short_names(pass.entities);
     if (pass.attached) {
       line += "by ";
     }
@@ -133,7 +126,7 @@ std::string text(const Plan& plan) {
       line += std::to_string(function + 1) + ' ';
     }
     if (!pass.sources.empty()) {
-      line += "from " + short_names(pass.sources);
+      line += "from " + test::short_names(pass.sources);
     }
     line.back() = '\n';
     result += line;
@@ -145,16 +138,17 @@ std::string text(const Model& model) {
   std::string result = "dim " + std::to_string(model.dim) + '\n';
   for (const Entity& entity : model.topology.entities()) {
     if (entity.dim > 0) {
-      result += short_names({entity}) + "over " + short_names(model.topology.lower(entity)) +
+      result += test::short_names({entity}) + "over " +
+                test::short_names(model.topology.lower(entity)) +
                 (model.meshed.count(entity) > 0 ? "meshed\n" : "\n");
     }
   }
   for (const SizeFunction& function : model.functions) {
-    result += kind_name(function.kind) + ' ' + short_names(function.sources) + "-> " +
-              short_names(function.attachments) + '\n';
+    result += kind_name(function.kind) + ' ' + test::short_names(function.sources) + "-> " +
+              test::short_names(function.attachments) + '\n';
   }
   for (const Entities& curves : model.together) {
-    result += "together " + short_names(curves) + '\n';
+    result += "together " + test::short_names(curves) + '\n';
   }
   return result;
 }

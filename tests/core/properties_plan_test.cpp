@@ -14,6 +14,7 @@
 #include "error.h"
 #include "meshing_plan.h"
 #include "property_rounds.h"
+#include "short_names.h"
 
 namespace meshgrow {
 namespace {
@@ -149,23 +150,15 @@ PlanModel random_plan_model(Random& random) {
 
 // ==== Plans as text
 
-std::string names(const Entities& entities) {
-  std::string text;
-  for (const Entity& entity : entities) {
-    text += std::string(1, "PCSV"[entity.dim]) + std::to_string(entity.tag) + ' ';
-  }
-  return text;
-}
-
 std::string text_of(const Plan& plan) {
   std::string text;
   for (const MeshingPass& pass : plan) {
-    text += std::to_string(pass.stage) + ": " + names(pass.entities) +
+    text += std::to_string(pass.stage) + ": " + test::short_names(pass.entities) +
             (pass.attached ? "by " : "alone ");
     for (const std::size_t function : pass.functions) {
       text += std::to_string(function) + ' ';
     }
-    text += "from " + names(pass.sources) + '\n';
+    text += "from " + test::short_names(pass.sources) + '\n';
   }
   return text;
 }
@@ -173,13 +166,14 @@ std::string text_of(const Plan& plan) {
 std::string text_of(const PlanModel& model) {
   std::string text = "dim " + std::to_string(model.dim) + '\n';
   for (const Entity& entity : model.topology.entities()) {
-    text += names({entity}) + "over " + names(model.topology.lower(entity)) + '\n';
+    text += test::short_names({entity}) + "over " +
+            test::short_names(model.topology.lower(entity)) + '\n';
   }
   for (const SizeFunction& function : model.functions) {
-    text += kind_name(function.kind) + ' ' + names(function.sources) + "-> " +
-            names(function.attachments) + '\n';
+    text += kind_name(function.kind) + ' ' + test::short_names(function.sources) + "-> " +
+            test::short_names(function.attachments) + '\n';
   }
-  return text + "meshed " + names({model.meshed.begin(), model.meshed.end()}) + '\n';
+  return text + "meshed " + test::short_names({model.meshed.begin(), model.meshed.end()}) + '\n';
 }
 
 /// "cycle" where the functions wait for each other.

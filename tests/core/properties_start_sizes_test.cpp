@@ -127,11 +127,19 @@ ProximityParameters random_parameters(Random& random) {
   return parameters;
 }
 
-SizedFacets gaps_in(const Sources& faces, ProximityParameters parameters, double scale = 1.0) {
+/// Its lengths multiplied.
+template <typename Parameters>
+Parameters scaled(Parameters parameters, double scale) {
   parameters.size_limit *= scale;
   parameters.min_size *= scale;
+  return parameters;
+}
+
+SizedFacets gaps_in(const Sources& faces, const ProximityParameters& parameters,
+                    double scale = 1.0) {
   SizedFacets facets;
-  append_proximity_start_sizes(volume_walls(faces), test::entities_of(faces), parameters, facets);
+  append_proximity_start_sizes(volume_walls(faces), test::entities_of(faces),
+                               scaled(parameters, scale), facets);
   return facets;
 }
 
@@ -198,12 +206,10 @@ TEST(ProximityProperties, MoreCellsAskForSmallerSizes) {
 
 // ==== Curvature
 
-SizedFacets bends_of(const FacetedSource& source, CurvatureParameters parameters,
+SizedFacets bends_of(const FacetedSource& source, const CurvatureParameters& parameters,
                      double scale = 1.0) {
-  parameters.min_size *= scale;
-  parameters.size_limit *= scale;
   SizedFacets facets;
-  append_curvature_start_sizes(source, parameters, 1.0 / 6.0, facets);
+  append_curvature_start_sizes(source, scaled(parameters, scale), 1.0 / 6.0, facets);
   return facets;
 }
 

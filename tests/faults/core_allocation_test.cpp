@@ -30,12 +30,7 @@ using test::surface;
 using test::volume;
 
 SizeFunction mesh_function(double growth_rate = 1.2) {
-  SizeFunction function;
-  function.sources = {surface};
-  function.attachments = {volume};
-  function.growth_rate = growth_rate;
-  function.size_limit = 1.0;
-  return function;
+  return test::mesh_in_ball(growth_rate, 1.0);
 }
 
 std::vector<FacetedSource> sphere(std::size_t triangles) {
@@ -53,12 +48,7 @@ SizeField field_of(std::size_t triangles, int threads) {
   options.threads = threads;
   SizeField field(test::ball_and_cube(), options);
   field.add(mesh_function());
-  SizeFunction fixed = mesh_function();
-  fixed.kind = Kind::fixed;
-  fixed.start_size = 0.1;
-  fixed.sources = {other_surface};
-  fixed.attachments = {other_volume};
-  field.add(fixed);
+  field.add(test::fixed_in_cube(1.2, 1.0));
   field.set_sources(0, sphere(triangles));
   FacetedSource square;
   square.entity = other_surface;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ball_and_cube.h"
 #include "field_file.h"
 #include "graded_sphere.h"
 #include "size_field.h"
@@ -36,11 +37,7 @@ void write_texts(const fs::path& folder) {
 
 /// Two volumes beside each other; functions of two kinds, one of them acts inside its source.
 SizeField two_volumes(std::size_t triangles, double tolerance, Evaluator evaluator) {
-  Topology topology;
-  topology.add_entity({2, 1}, {}, Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)));
-  topology.add_entity({2, 2}, {}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
-  topology.add_entity({3, 1}, {{2, 1}}, Box(Vec3(-2, -2, -2), Vec3(2, 2, 2)));
-  topology.add_entity({3, 2}, {{2, 2}}, Box(Vec3(3, 0, 0), Vec3(4, 1, 1)));
+  Topology topology = test::ball_and_cube();
   topology.add_physical_group({2, 5, "wall", {{2, 1}}});
   FieldOptions options;
   options.tolerance = tolerance;

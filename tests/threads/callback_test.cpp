@@ -208,7 +208,7 @@ TEST_F(Callback, FieldsMayComeAndGoBetweenCalls) {
 struct Told {
   meshgrow_field* field;
   int result = -1;
-  std::string error;
+  std::string error = {};
 
   void keep(int told) {
     result = told;
